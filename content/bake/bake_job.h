@@ -1,0 +1,45 @@
+// The whole bake of a scene into a pack: space, placement, light, probes, levels, chunks, manifest. Resumable: what is
+// finished is kept in PACK.partial/ beside the pack until the manifest is written.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "content/bake/light_field.h"
+#include "content/bake/placement.h"
+#include "content/progress.h"
+#include "content/scene/scene.h"
+
+namespace probewalk {
+
+struct BakeOptions {
+  std::filesystem::path scene_file;
+  std::filesystem::path pack;  // ends in .probes
+  SceneLoadOptions load;
+  int resolution = 512;            // geometry cells per side of the fine level, 2^k
+  int radiance_resolution = 0;     // 0 = as resolution
+  int coarse_resolution = 128;     // level 0
+  PlacementOptions placement;
+  LightOptions light;
+  std::optional<glm::dvec3> start_m;
+  std::string only_room;           // bake this room's chunks anew, keep the rest of an existing pack
+  std::string isa;
+};
+
+struct BakeReport {
+  std::size_t rooms = 0, probes = 0, levels = 0;
+  std::uint64_t texels = 0;         // radiance texels baked, all levels, mips not counted
+  std::uint64_t rays = 0;
+  double seconds = 0.0;
+  double seconds_per_million_texels = 0.0;
+  std::uint64_t bytes_disk = 0;
+  std::uint64_t bytes_device = 0;
+  double connected_fraction = 0.0;  // of cells
+};
+
+// Throws BadInput, BadUsage, Interrupted. An existing whole pack of other options or another scene is replaced.
+BakeReport bake(const BakeOptions& options, Progress& progress);
+
+}  // namespace probewalk

@@ -1,0 +1,47 @@
+// Outgoing radiance at any surface point: one noise-free, view-independent function that the bake and the reference
+// pictures share, so that errors measured are errors of the probes. Direct light by next-event estimation over a fixed
+// low-discrepancy pattern (at most 8 shadow rays), indirect from irradiance cached on the surfaces.
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <memory>
+#include <string>
+
+#include "content/progress.h"
+#include "content/scene/ray_scene.h"
+#include "content/scene/scene.h"
+
+namespace probewalk {
+
+struct LightOptions {
+  int bounces = 4;             // of indirect light
+  int samples = 128;           // rays a cache point and bounce
+  double cache_spacing_m = 0.25;
+  std::uint32_t seed = 1;
+  int threads = 0;             // 0 = all
+};
+
+class LightField {
+ public:
+  // Builds the irradiance cache (long: reports progress, obeys cancellation). Deterministic, whatever the threads.
+  LightField(const Scene& scene, const RayScene& rays, const LightOptions& options, Progress& progress);
+  ~LightField();
+  LightField(const LightField&) = delete;
+  LightField& operator=(const LightField&) = delete;
+
+  // Radiance in cd/m^2 that leaves the hit point towards -direction; footprint_m is the width of the ray's footprint on
+  // a surface facing it (for texture filtering). Thread-safe.
+  glm::vec3 outgoing(const SurfaceHit& hit, glm::vec3 origin_m, glm::vec3 unit_direction, float footprint_m) const;
+  // Radiance along a ray: outgoing() of what it meets, else the sky. spread_rad is the ray's angular width.
+  glm::vec3 along(glm::vec3 origin_m, glm::vec3 unit_direction, float spread_rad, SurfaceHit* hit = nullptr) const;
+
+  // Content hash of everything the cache holds; equal between two builds of the same scene and options.
+  std::string hash() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace probewalk

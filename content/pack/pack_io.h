@@ -1,0 +1,60 @@
+// Packs on disk: encode and decode chunks, write and open packs, verify.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "content/pack/manifest.h"
+#include "content/probe/probe_map.h"
+#include "content/progress.h"
+
+namespace probewalk {
+
+// All probes of one room at one level.
+struct RoomLevel {
+  glm::dvec3 origin_m{0.0};
+  std::vector<ProbeMap> probes;  // all of the same sizes
+};
+
+// Deterministic. Positions are stored relative to origin_m in float.
+std::vector<std::byte> encode_chunk(const RoomLevel& level);
+// Refuses anything out of the format or its limits, non-finite or negative samples, positions off by kCoordinate_m.
+// `source` names the chunk in errors. Throws BadInput.
+RoomLevel decode_chunk(std::span<const std::byte> bytes, const std::string& source);
+// XXH3-128 as 32 lower-case hex digits.
+std::string content_hash(std::span<const std::byte> bytes);
+
+class PackWriter {
+ public:
+  // Creates the folder (and `chunks/`) if needed.
+  explicit PackWriter(std::filesystem::path pack);
+  // Writes chunks/<hash> by rename (nothing when it is there already); returns the hash.
+  std::string add_chunk(std::span<const std::byte> bytes);
+  // Writes pack.json last, by rename, then removes chunks that it does not name.
+  void finish(const Manifest& manifest);
+
+ private:
+  std::filesystem::path pack_;
+};
+
+class Pack {
+ public:
+  // Reads and checks the manifest. Throws BadInput: missing, foreign, truncated, edited.
+  static Pack open(const std::filesystem::path& pack);
+  const Manifest& manifest() const { return manifest_; }
+  const std::filesystem::path& path() const { return path_; }
+  // The chunk's bytes, hash checked. Throws BadInput. Thread-safe.
+  std::vector<std::byte> read_chunk(const LevelEntry& level) const;
+  RoomLevel read_level(std::size_t room, std::size_t level) const;
+  // Reads and checks every byte; one line per damaged chunk. Empty = sound.
+  std::vector<std::string> verify(Progress& progress) const;
+
+ private:
+  std::filesystem::path path_;
+  Manifest manifest_;
+};
+
+}  // namespace probewalk

@@ -1,0 +1,72 @@
+// The Vulkan instance, device and queue. How they are created is injected: OpenXR's vulkan_enable2 creates them through
+// the runtime, the desktop path plugs in its own surface extensions. Everything else of render takes a Device&.
+#pragma once
+
+#include <volk.h>
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+struct VmaAllocator_T;
+
+namespace probewalk {
+
+// What a frame source wants of the device. Empty functions = plain Vulkan calls.
+struct DeviceHooks {
+  std::vector<std::string> instance_extensions;  // required
+  std::vector<std::string> device_extensions;    // required
+  std::function<VkResult(PFN_vkGetInstanceProcAddr, const VkInstanceCreateInfo&, VkInstance*)> create_instance;
+  std::function<VkPhysicalDevice(VkInstance)> choose_physical_device;
+  std::function<VkResult(PFN_vkGetInstanceProcAddr, VkPhysicalDevice, const VkDeviceCreateInfo&, VkDevice*)> create_device;
+  // Whether a queue family can present (window); empty = no presentation wanted.
+  std::function<bool(VkInstance, VkPhysicalDevice, std::uint32_t family)> can_present;
+};
+
+struct DeviceOptions {
+  std::string device;       // --device NAME|INDEX: substring of the name or index; "" = best (discrete first, CPU last)
+  bool validation = false;  // VK_LAYER_KHRONOS_validation; its messages are counted and logged
+};
+
+struct DeviceInfo {
+  std::string name;
+  std::string driver;  // name and version
+  std::string api_version;
+  bool is_software = false;  // VK_PHYSICAL_DEVICE_TYPE_CPU
+  bool suitable = false;
+  std::string missing;  // why not
+};
+
+class Device {
+ public:
+  // Throws NoDevice with the list of devices seen and what each lacks.
+  Device(const DeviceHooks& hooks, const DeviceOptions& options);
+  ~Device();
+  Device(const Device&) = delete;
+  Device& operator=(const Device&) = delete;
+
+  static std::vector<DeviceInfo> list();  // --list-devices
+
+  VkInstance instance() const;
+  VkPhysicalDevice physical() const;
+  VkDevice handle() const;
+  VkQueue queue() const;
+  std::uint32_t queue_family() const;
+  VmaAllocator_T* allocator() const;
+  const DeviceInfo& info() const;
+  bool has_calibrated_timestamps() const;
+  float timestamp_period_ns() const;
+  // Errors and warnings that the validation layer has reported so far.
+  std::uint32_t validation_messages() const;
+  // Serialises vkQueueSubmit and friends between the frame thread, the loader and the mirror.
+  void submit(const VkSubmitInfo2& info, VkFence fence) const;
+  void wait_idle() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace probewalk

@@ -1,0 +1,110 @@
+// How probes lie in device memory. The loader builds these words from a pack (content/probe/device_probe.h), so every
+// index in them is our own: nothing that a pack says is used as an address.
+//
+// Geometry block of a probe of n = 2^n_log2 cells a side, in 32-bit words:
+//   (n+1)^2            w at the vertices, row-major, float bits; exactly 0 = sky
+//   pyramid            levels 1 .. n_log2-1, level l has (n >> l)^2 floats: maximum of w over the node, cut cells
+//                      counted with their extension (1 + 2 kSlopeClamp)
+//   n^2/32 * 2         per 32 cells: mask of cells with a cut, number of such cells before
+//   8 per cut cell     cut record, quadrant-local (cell corner nearest the map's centre is (0, 0)):
+//     [0] fractions, 6 bits each: (0,0)-(1,0), (0,0)-(0,1), (1,0)-(0,1), (1,0)-(1,1), (0,1)-(1,1)
+//     [1] disconnected edges: bits 0..2 low triangle (corners (0,0), (1,0), (0,1); edges 01, 12, 20),
+//         bits 4..6 high triangle (corners (1,1), (1,0), (0,1); edges 01, 12, 20)
+//     [2..4] low, [5..7] high triangle: per corner the surface's slopes dw per cell step along U and V, snorm16 pair in
+//         units of kSlopeClamp * w(corner)
+//
+// Radiance block of a probe of r = 2^r_log2 texels a side:
+//   mip chain          E5B9G9R9 words, finest first, down to 1x1
+//   r^2/2              log-coded w of the surface that each texel's centre sees, two a word, even texel in the low half
+#ifndef PROBEWALK_SHADERS_SHARED_PROBE_LAYOUT_H
+#define PROBEWALK_SHADERS_SHARED_PROBE_LAYOUT_H
+
+#include "dialect.h"
+
+PW_SHARED_BEGIN
+
+// Largest slope of a cut triangle's plane, as a fraction of w a cell step. Beyond it a vertex's normal extrapolates
+// worse than a flat piece does (design: tracer, 3.1).
+PW_CONSTANT float kSlopeClamp = 0.05f;
+// A cut cell's maximum counts this much more, so that no extended piece sticks out of its pyramid node.
+PW_CONSTANT float kCutExtension = 1.1001f;
+// Node level at which a walk starts; 3 to 5 are within noise of one another (design: tracer, 3.1).
+PW_CONSTANT int kStartLevel = 4;
+PW_CONSTANT int kCutRecordWords = 8;
+
+// Answers of a ray.
+PW_CONSTANT int kClassHit = 0;
+PW_CONSTANT int kClassMiss = 1;
+PW_CONSTANT int kClassUnknown = 2;
+
+struct ProbeRecord {
+  pw_vec3 position_hi_m;  // position rounded to float
+  float l_min_m;          // the octahedron of this L1 radius around the probe is empty; 0 = no limit known
+  pw_vec3 position_lo_m;  // what the rounding left, so that differences to nearby points are exact to one ulp
+  pw_uint n_log2;         // 0 = not resident
+  pw_uvec2 geometry_address;
+  pw_uvec2 radiance_address;
+  pw_uint r_log2;
+  pw_uint room;
+  pw_uint level;
+  pw_uint has_cuts;
+};
+
+// The building's probe grid: vertex (x, y, z) at origin + spacing * (x, y, z) is served by probe table[(z dy + y) dx + x].
+struct GridConstants {
+  pw_vec3 origin_m;
+  float spacing_mean_m;  // geometric mean of the three spacings
+  pw_vec3 spacing_m;
+  float inverse_diagonal;  // 1 / |spacing|
+  pw_ivec3 dims;
+  pw_uint probe_count;
+  pw_uvec2 table_address;   // pw_uint per vertex
+  pw_uvec2 probes_address;  // ProbeRecord per probe
+};
+
+// Dials of the tracer that change at run time.
+struct TraceConstants {
+  float distance_weight;  // score = cosine - distance_weight * distance / diagonal: 1 in rooms, 4 in clutter
+  float start_margin;     // a start within this fraction behind the nearest vertex still counts as in front
+  pw_int max_tries;       // walks a ray, then the stop point is the answer
+  float radiance_scale;   // stored radiance = cd/m^2 * radiance_scale
+};
+
+// One eye. Pixel (x, y) of a view looks along world_from_eye * (left + (x+.5)/width (right-left), ..., -1).
+struct ViewConstants {
+  pw_vec3 origin_hi_m;
+  float pixel_angle_rad;  // angular width of the centre pixel
+  pw_vec3 origin_lo_m;
+  float reserved0;
+  pw_vec4 world_from_eye_x;  // columns of the rotation
+  pw_vec4 world_from_eye_y;
+  pw_vec4 world_from_eye_z;
+  pw_vec4 tan_angles;  // tangents of fov: left, right, up, down (left and down negative)
+};
+
+PW_CONSTANT int kMaxViews = 4;
+
+// Written just before submit (late pose), read by trace_stereo.comp and resolve.frag.
+struct FrameConstants {
+  GridConstants grid;
+  TraceConstants trace;
+  pw_ivec2 size_px;  // of each view
+  pw_int view_count;
+  float exposure;  // 2^-ev-like factor: cd/m^2 * exposure = 1 is display white before the tone curve
+  float fade;      // 0 = picture, 1 = black
+  pw_uint frame_index;
+  float near_m;
+  float far_m;
+  ViewConstants view[4];
+};
+
+PW_SHARED_END
+
+#ifdef __cplusplus
+namespace probewalk {
+static_assert(sizeof(ProbeRecord) == 64 && sizeof(GridConstants) == 64 && sizeof(ViewConstants) == 96);
+static_assert(sizeof(FrameConstants) == 64 + 16 + 32 + 4 * 96);
+}  // namespace probewalk
+#endif
+
+#endif

@@ -1,0 +1,74 @@
+// Where frames come from and go to: the one interface that headset, window and files share. A frame is
+//   poll -> wait -> begin -> locate (early) -> [record] -> locate (late) -> [submit] -> end
+// in this order, on one thread. Nothing here knows what is drawn.
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <glm/gtc/quaternion.hpp>
+#include <string>
+#include <vector>
+
+#include "render/device.h"
+
+namespace probewalk {
+
+enum class SourceState {
+  kIdle,      // not showing: poll again a little later
+  kRunning,   // frames must be submitted
+  kLost,      // runtime, session or surface gone; the source must be destroyed (and may be made anew)
+  kFinished,  // the user closed it, or the path is at its end
+};
+
+struct FrameTiming {
+  std::int64_t predicted_display_ns = 0;  // CLOCK_MONOTONIC
+  std::int64_t period_ns = 0;
+  bool should_render = true;
+  bool discarded = false;  // begin returned XR_FRAME_DISCARDED
+};
+
+// One eye for one frame. The rig's (locomotion's) transform is already applied: world space, metres.
+struct ViewPose {
+  glm::dvec3 position_m{0.0};
+  glm::dquat orientation{1.0, 0.0, 0.0, 0.0};
+  float fov_left_rad = -0.7f, fov_right_rad = 0.7f, fov_up_rad = 0.7f, fov_down_rad = -0.7f;
+};
+
+// What the frame's picture is drawn into: a colour attachment with one layer a view, in `initial_layout` when handed
+// out, to be left in `final_layout`.
+struct FrameTarget {
+  VkImage image = VK_NULL_HANDLE;
+  VkFormat format = VK_FORMAT_UNDEFINED;  // an sRGB format: the attachment encodes
+  VkExtent2D extent{};
+  std::uint32_t layers = 0;
+  VkImageLayout initial_layout = VK_IMAGE_LAYOUT_UNDEFINED;
+  VkImageLayout final_layout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
+  VkSemaphore wait_before = VK_NULL_HANDLE;     // image available (window), or none
+  VkSemaphore signal_after = VK_NULL_HANDLE;    // rendering done (window), or none
+};
+
+class FrameSource {
+ public:
+  virtual ~FrameSource() = default;
+  // "headset", "window", "offscreen".
+  virtual std::string kind() const = 0;
+  // Runtime or display in words, for the log and the report.
+  virtual std::string description() const = 0;
+  // Handles events; never blocks.
+  virtual SourceState poll() = 0;
+  // Blocks until the next frame should begin.
+  virtual FrameTiming wait() = 0;
+  virtual void begin(FrameTiming& timing) = 0;
+  // Views for the predicted display time; callable several times a frame, later is better. `head` receives the pose of
+  // the midpoint between the eyes when not null. Empty = no valid pose yet.
+  virtual std::vector<ViewPose> locate(const FrameTiming& timing, ViewPose* head = nullptr) = 0;
+  // Size of each view and their number, fixed while running.
+  virtual VkExtent2D view_extent() const = 0;
+  virtual std::uint32_t view_count() const = 0;
+  virtual VkFormat color_format() const = 0;
+  virtual FrameTarget acquire() = 0;
+  // Ends the frame with the views that were rendered (empty = nothing was).
+  virtual void end(const FrameTiming& timing, const std::vector<ViewPose>& rendered_views) = 0;
+};
+
+}  // namespace probewalk

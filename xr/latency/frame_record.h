@@ -1,0 +1,43 @@
+// The time points of one frame, CLOCK_MONOTONIC nanoseconds; the words are those of the CSV, the JSON and the page.
+// 0 = did not happen.
+#pragma once
+
+#include <cstdint>
+
+namespace probewalk {
+
+// A call's or a pass's enter and leave.
+struct Interval {
+  std::int64_t begin = 0;
+  std::int64_t end = 0;
+};
+
+struct FrameRecord {
+  std::uint64_t frame_id = 0;
+  Interval wait, begin, locate_early, record, locate_late, submit, end;
+  // Device, on the same axis when clock_calibrated.
+  Interval gpu, gpu_trace, gpu_resolve;
+  bool clock_calibrated = false;
+  std::int64_t clock_deviation_ns = 0;
+  // From the runtime.
+  std::int64_t predicted_display = 0;
+  std::int64_t period = 0;
+  bool should_render = true;
+  bool discarded = false;
+  // Pose used against the runtime's later answer; negative = not measured.
+  double pose_error_mm = -1.0;
+  double pose_error_deg = -1.0;
+  // Streaming.
+  std::uint64_t bytes_uploaded = 0;
+  std::uint32_t queue_depth = 0;
+  std::int32_t room = -1;
+  std::int32_t level_shown = -1;
+  std::int32_t level_wanted = -1;
+  std::int64_t streaming_ns = 0;  // time the frame thread spent in or blocked on streaming
+  std::uint64_t device_bytes = 0;
+  // Mirror.
+  Interval mirror;
+  bool mirror_presented = false;
+};
+
+}  // namespace probewalk
