@@ -15,6 +15,9 @@ struct Interval {
 struct FrameRecord {
   std::uint64_t frame_id = 0;
   Interval wait, begin, locate_early, record, locate_late, submit, end;
+  // Of wait.end .. end.end: time spent blocked on a swapchain image or on the device, wherever it falls.
+  std::int64_t blocked_ns = 0;
+  std::uint32_t pipelines_built = 0;
   // Device, on the same axis when clock_calibrated.
   Interval gpu, gpu_trace, gpu_resolve;
   bool clock_calibrated = false;

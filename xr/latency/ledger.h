@@ -1,0 +1,105 @@
+// The books of one run: takes the time points of every frame and derives what the report states. Pure: numbers in,
+// numbers out. The definitions are those of `quantity_definitions()`, which every report prints.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "xr/latency/frame_record.h"
+#include "xr/latency/histogram.h"
+
+namespace probewalk {
+
+struct LedgerOptions {
+  // The first frames of the run: kept, counted, written to frames.csv, left out of every statistic.
+  std::uint64_t warmup_frames = 0;
+  // False for a display without deadlines (offscreen on a fixed clock): its predicted display times are no moments of
+  // the real clock, so prediction horizon, deadline margin and missed frames do not exist.
+  bool has_deadlines = true;
+};
+
+// What is derived from one frame and the one before it. Empty = the display lacks it, or it was not measured.
+struct FrameQuantities {
+  std::optional<std::int64_t> frame_ns;               // wait_end(n) - wait_end(n-1)
+  std::optional<std::int64_t> cpu_wait_ns;            // inside the runtime's wait
+  std::optional<std::int64_t> cpu_busy_ns;            // wait_end to end_end less time blocked
+  std::optional<std::int64_t> gpu_busy_ns;            // gpu_begin to gpu_end
+  std::optional<std::int64_t> gpu_trace_ns;           // the trace pass
+  std::optional<std::int64_t> prediction_horizon_ns;  // predicted_display - locate_late_end
+  std::optional<std::int64_t> deadline_margin_ns;     // (predicted_display - period) - gpu_end
+  std::optional<double> pose_error_mm;
+  std::optional<double> pose_error_deg;
+  std::uint32_t missed = 0;           // refreshes between the frame before and this one that no frame was made for
+  std::optional<bool> within_budget;  // cpu_busy and gpu_busy both <= period
+};
+// `previous` is null for the first frame of a run.
+FrameQuantities derive(const FrameRecord& frame, const FrameRecord* previous, bool has_deadlines);
+
+// One quantity over the run. Values are in `unit / scale`: the histogram holds integers.
+struct QuantitySummary {
+  std::string name;  // key in summary.json: "frame", "cpu_busy", ..., "pose_error_mm"
+  std::string unit;  // of the values in summary.json: "ns", "mm", "deg"
+  double scale = 1.0;
+  Histogram histogram;
+};
+
+// One of the longest frames, with what made it long.
+struct WorstFrame {
+  std::uint64_t frame_id = 0;
+  std::size_t index = 0;         // in Ledger::frames()
+  std::int64_t frame_ns = 0;
+  std::int64_t cpu_busy_ns = 0;  // of the frame before, whose work fills this interval
+  std::int64_t gpu_busy_ns = 0;
+  std::uint32_t missed = 0;
+  std::string stage;             // the stage that exceeded its median most: "record", "gpu_trace", "wait", ...
+  std::int64_t excess_ns = 0;    // by how much
+  std::string cause;             // a sentence: the stage, and upload, room switch or pipeline build where there was one
+};
+
+struct Summary {
+  std::uint64_t frames = 0;         // without warm-up
+  std::uint64_t warmup_frames = 0;  // frames + warmup_frames = frames added
+  std::int64_t period_ns = 0;       // median
+  std::uint64_t missed = 0;
+  std::uint64_t discarded = 0;
+  std::uint64_t not_rendered = 0;
+  std::uint64_t stale_run_max = 0;  // consecutive refreshes without a new frame
+  std::optional<double> within_budget_fraction;
+  std::optional<std::int64_t> clock_error_ns;  // largest; empty = device clock not calibrated
+  std::vector<QuantitySummary> quantities;     // in the order of quantity_definitions()
+  std::vector<WorstFrame> worst;               // at most ten, longest first
+  // Streaming. Bytes count the whole run, warm-up included.
+  std::uint64_t bytes_uploaded = 0;
+  std::uint64_t device_bytes_max = 0;
+  std::optional<double> coarse_frame_fraction;  // level_shown < level_wanted
+  std::optional<std::int64_t> frame_thread_p99_ns;
+
+  const QuantitySummary& quantity(std::string_view name) const;
+};
+
+class Ledger {
+ public:
+  explicit Ledger(LedgerOptions options = {}) : options_(options) {}
+  // Frames in the order of their waits.
+  void add(const FrameRecord& frame) { frames_.push_back(frame); }
+  const std::vector<FrameRecord>& frames() const { return frames_; }
+  const LedgerOptions& options() const { return options_; }
+  Summary summary() const;
+
+ private:
+  LedgerOptions options_;
+  std::vector<FrameRecord> frames_;
+};
+
+// What each quantity means, in the words that reports print. The order is that of every table.
+struct QuantityDefinition {
+  const char* name;
+  const char* unit;
+  const char* text;
+};
+std::span<const QuantityDefinition> quantity_definitions();
+
+}  // namespace probewalk

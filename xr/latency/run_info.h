@@ -1,0 +1,58 @@
+// What a report must say about a run besides its frames: where, on what, and how to repeat it.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace probewalk {
+
+struct MachineInfo {
+  std::string cpu;
+  std::uint32_t cores = 0;  // that this process may use
+  std::string kernel;
+  std::string operating_system;
+  std::uint64_t memory_bytes = 0;
+  std::string governor;  // empty = not readable
+};
+// Reads the machine at hand; what cannot be read is left empty.
+MachineInfo read_machine_info();
+
+struct DeviceFacts {
+  std::string name;
+  std::string driver;
+  std::string api_version;
+  bool is_software = false;
+};
+
+struct StreamingFacts {
+  std::uint64_t rooms_loaded = 0;
+  std::uint64_t device_budget_bytes = 0;          // 0 = none was set
+  std::vector<std::int64_t> need_to_resident_ns;  // one a room or level: first wanted to first drawable
+};
+
+struct RunInfo {
+  std::string command;          // the words that repeat the run, shell-quoted: command_line(argc, argv)
+  MachineInfo machine = read_machine_info();
+  DeviceFacts device;
+  std::string runtime;          // OpenXR runtime, its version and the headset; empty = none took part
+  std::string display;          // FrameSource::kind(): "headset", "window", "offscreen"
+  std::string display_details;  // FrameSource::description()
+  std::uint32_t eye_width = 0;
+  std::uint32_t eye_height = 0;
+  std::uint32_t views = 0;
+  std::string method;           // how rays are traced
+  std::string pack;
+  std::string build;            // version, commit, compiler, build type; read_build_info()
+  std::string started_utc;      // ISO 8601
+  std::optional<double> instrumentation_cost_fraction;  // from an on/off pair; empty = not measured
+  StreamingFacts streaming;
+};
+
+std::string read_build_info();
+std::string utc_now();
+// The arguments as one line that a shell reads back as they were.
+std::string command_line(int argc, const char* const* argv);
+
+}  // namespace probewalk
