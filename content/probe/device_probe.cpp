@@ -1,0 +1,215 @@
+#include "content/probe/device_probe.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+
+namespace probewalk {
+
+namespace {
+
+constexpr float kRounding = 2e-6f;  // keeps l_min_m inside the empty octahedron whatever the rounding
+
+int log2_of(int power_of_two) { return std::countr_zero(static_cast<unsigned>(power_of_two)); }
+
+// A cell in quadrant-local terms: local corner (a, b) is vertex (x0 + su * a, y0 + sv * b).
+struct Cell {
+  const ProbeGeometry& map;
+  int i, j;    // cell
+  int su, sv;  // direction of local U and V in the map
+  int x0, y0;  // vertex at local (0, 0)
+  bool upper_low, upper_high;  // octant (z >= 0) of the low and of the high triangle
+
+  Cell(const ProbeGeometry& geometry, int ci, int cj) : map(geometry), i(ci), j(cj) {
+    const int half = map.n / 2;
+    su = i >= half ? 1 : -1;
+    sv = j >= half ? 1 : -1;
+    x0 = su > 0 ? i : i + 1;
+    y0 = sv > 0 ? j : j + 1;
+    const int u = su > 0 ? i - half : half - 1 - i, v = sv > 0 ? j - half : half - 1 - j;
+    upper_low = u + v < half;       // the fold |u| + |v| = 1 runs along the diagonals of cells with u + v = half - 1
+    upper_high = u + v < half - 1;
+  }
+
+  std::size_t vertex(int a, int b) const {
+    return static_cast<std::size_t>(y0 + sv * b) * (map.n + 1) + static_cast<std::size_t>(x0 + su * a);
+  }
+  float w(int a, int b) const { return map.w[vertex(a, b)]; }
+
+  // Edge bytes, oriented along growing local coordinates (the diagonal from (1, 0) to (0, 1)).
+  static std::uint8_t oriented(std::uint8_t edge, bool forward) {
+    return edge == kConnected || forward ? edge : static_cast<std::uint8_t>(kCutSteps + 1 - edge);
+  }
+  std::uint8_t along_u(int b) const {
+    return oriented(map.edges_horizontal[static_cast<std::size_t>(y0 + sv * b) * map.n + i], su > 0);
+  }
+  std::uint8_t along_v(int a) const {
+    return oriented(map.edges_vertical[static_cast<std::size_t>(j) * (map.n + 1) + (x0 + su * a)], sv > 0);
+  }
+  // Stored from (i+1, j) to (i, j+1) where su == sv, else from (i, j) to (i+1, j+1); either way from the smaller j.
+  std::uint8_t diagonal() const { return oriented(map.edges_diagonal[static_cast<std::size_t>(j) * map.n + i], sv > 0); }
+};
+
+// Slopes of w along local U and V a cell step, of the plane through the vertex's surface (design: tracer, step 9),
+// clamped to kSlopeClamp * w.
+std::array<float, 2> vertex_slopes(const Cell& cell, int a, int b, bool upper) {
+  const std::size_t vertex = cell.vertex(a, b);
+  const float w = cell.map.w[vertex];
+  const std::uint16_t code = cell.map.normals[vertex];
+  if (!(w > 0.0f) || code == 0) return {0.0f, 0.0f};
+  const glm::vec3 m = decode_normal(code);
+  const int n = cell.map.n;
+  const float half = static_cast<float>(n / 2);
+  const float au = std::abs(static_cast<float>(cell.x0 + cell.su * a) - half) / half;
+  const float av = std::abs(static_cast<float>(cell.y0 + cell.sv * b) - half) / half;
+  const float su = static_cast<float>(cell.su), sv = static_cast<float>(cell.sv), sz = upper ? 1.0f : -1.0f;
+  const glm::vec3 q = upper ? glm::vec3(su * au, sv * av, 1.0f - au - av)
+                            : glm::vec3(su * (1.0f - av), sv * (1.0f - au), 1.0f - au - av);
+  const float facing = m.x * q.x + m.y * q.y + m.z * q.z;
+  if (std::abs(facing) < 1e-6f) return {0.0f, 0.0f};
+  const float k = w / facing / half;
+  const float gx = su * m.x * k, gy = sv * m.y * k, gz = sz * m.z * k;
+  float cu = upper ? gx - gz : gz - gy;
+  float cv = upper ? gy - gz : gz - gx;
+  const float steepest = std::max(std::abs(cu), std::abs(cv)), limit = kSlopeClamp * w;
+  if (steepest > limit) {
+    cu *= limit / steepest;
+    cv *= limit / steepest;
+  }
+  return {cu, cv};
+}
+
+std::uint32_t pack_slopes(std::array<float, 2> slopes, float w) {
+  const auto snorm = [&](float slope) {
+    const float x = w > 0.0f ? std::clamp(slope / (kSlopeClamp * w), -1.0f, 1.0f) : 0.0f;
+    return static_cast<std::uint32_t>(static_cast<std::uint16_t>(static_cast<std::int16_t>(std::lround(x * 32767.0f))));
+  };
+  return snorm(slopes[0]) | snorm(slopes[1]) << 16;
+}
+
+struct CutFlags {
+  std::uint32_t flags;  // as in the record's word 1
+  std::array<std::uint8_t, 5> edges;
+};
+
+CutFlags cut_flags(const Cell& cell) {
+  const std::array<std::uint8_t, 5> e{cell.along_u(0), cell.along_v(0), cell.diagonal(), cell.along_v(1), cell.along_u(1)};
+  const auto cut = [&](int k) { return static_cast<std::uint32_t>(e[k] != kConnected); };
+  return {cut(0) | cut(2) << 1 | cut(1) << 2 | cut(3) << 4 | cut(2) << 5 | cut(4) << 6, e};
+}
+
+void append_cut_record(const Cell& cell, const CutFlags& cut, std::vector<std::uint32_t>& words) {
+  std::uint32_t fractions = 0;
+  for (int k = 0; k < 5; ++k) {
+    fractions |= static_cast<std::uint32_t>(std::max<int>(cut.edges[k], 1) - 1) << (6 * k);
+  }
+  words.push_back(fractions);
+  words.push_back(cut.flags);
+  constexpr int corners[2][3][2] = {{{0, 0}, {1, 0}, {0, 1}}, {{1, 1}, {1, 0}, {0, 1}}};
+  for (int high = 0; high < 2; ++high) {
+    const bool upper = high ? cell.upper_high : cell.upper_low;
+    for (const auto& c : corners[high]) {
+      words.push_back(pack_slopes(vertex_slopes(cell, c[0], c[1], upper), cell.w(c[0], c[1])));
+    }
+  }
+}
+
+}  // namespace
+
+void split_position(glm::dvec3 position_m, glm::vec3& hi_m, glm::vec3& lo_m) {
+  hi_m = glm::vec3(position_m);
+  lo_m = glm::vec3(position_m - glm::dvec3(hi_m));
+}
+
+std::size_t count_cut_cells(const ProbeGeometry& geometry) {
+  std::size_t count = 0;
+  for (int j = 0; j < geometry.n; ++j) {
+    for (int i = 0; i < geometry.n; ++i) count += cut_flags(Cell(geometry, i, j)).flags != 0;
+  }
+  return count;
+}
+
+std::uint64_t device_probe_bytes(int n, int r, std::size_t cut_cells) {
+  const std::uint64_t n2 = static_cast<std::uint64_t>(n) * n;
+  const std::uint64_t vertices = static_cast<std::uint64_t>(n + 1) * (n + 1);
+  const std::uint64_t pyramid = (n2 - 4) / 3;  // levels 1 .. log2(n) - 1
+  const std::uint64_t radiance = mip_chain_texels(r) + static_cast<std::uint64_t>(r) * r / 2;
+  return 4 * (vertices + pyramid + n2 / 16 + kCutRecordWords * cut_cells + radiance);
+}
+
+DeviceProbe build_device_probe(const ProbeMap& map) {
+  const ProbeGeometry& g = map.geometry;
+  const int n = g.n;
+  DeviceProbe probe;
+  std::vector<std::uint32_t>& words = probe.geometry;
+  words.reserve(device_probe_bytes(n, 1, 0) / 4 + 1024);
+  for (float w : g.w) words.push_back(std::bit_cast<std::uint32_t>(w));
+
+  // Cells: maxima for the pyramid, masks, cut records.
+  std::vector<float> maxima(static_cast<std::size_t>(n) * n);
+  std::vector<std::uint32_t> masks, records;
+  masks.reserve(static_cast<std::size_t>(n) * n / 16);
+  std::uint32_t cut_cells = 0;
+  for (int j = 0; j < n; ++j) {
+    for (int i = 0; i < n; ++i) {
+      const std::size_t index = static_cast<std::size_t>(j) * n + i;
+      if (index % 32 == 0) {
+        masks.push_back(0);
+        masks.push_back(cut_cells);
+      }
+      const Cell cell(g, i, j);
+      float maximum = std::max({cell.w(0, 0), cell.w(1, 0), cell.w(0, 1), cell.w(1, 1)});
+      if (const CutFlags cut = cut_flags(cell); cut.flags != 0) {
+        masks[masks.size() - 2] |= 1u << (index % 32);
+        append_cut_record(cell, cut, records);
+        ++cut_cells;
+        maximum *= kCutExtension;
+      }
+      maxima[index] = maximum;
+    }
+  }
+  for (int side = n / 2; side >= 2; side /= 2) {
+    std::vector<float> coarser(static_cast<std::size_t>(side) * side);
+    const std::size_t fine_side = 2 * static_cast<std::size_t>(side);
+    for (std::size_t j = 0; j < static_cast<std::size_t>(side); ++j) {
+      for (std::size_t i = 0; i < static_cast<std::size_t>(side); ++i) {
+        const float* p = &maxima[2 * j * fine_side + 2 * i];
+        const float maximum = std::max({p[0], p[1], p[fine_side], p[fine_side + 1]});
+        coarser[j * side + i] = maximum;
+        words.push_back(std::bit_cast<std::uint32_t>(maximum));
+      }
+    }
+    maxima = std::move(coarser);
+  }
+  const float top = *std::max_element(maxima.begin(), maxima.end());
+  words.insert(words.end(), masks.begin(), masks.end());
+  words.insert(words.end(), records.begin(), records.end());
+
+  const ProbeRadiance& radiance = map.radiance;
+  probe.radiance = radiance.rgb9e5;
+  for (std::size_t k = 0; k + 1 < radiance.texel_w.size(); k += 2) {
+    probe.radiance.push_back(radiance.texel_w[k] | static_cast<std::uint32_t>(radiance.texel_w[k + 1]) << 16);
+  }
+
+  split_position(g.position_m, probe.record.position_hi_m, probe.record.position_lo_m);
+  // All sky: nothing anywhere, any radius is empty; a finite one keeps the tracer's arithmetic finite.
+  probe.record.l_min_m = top > 0.0f ? (1.0f - kRounding) / top : 1e15f;
+  probe.record.n_log2 = static_cast<std::uint32_t>(log2_of(n));
+  probe.record.r_log2 = radiance.r > 0 ? static_cast<std::uint32_t>(log2_of(radiance.r)) : 0;
+  probe.record.has_cuts = cut_cells != 0;
+  return probe;
+}
+
+ProbeRecord record_in_memory(const DeviceProbe& probe) {
+  const auto address = [](const std::vector<std::uint32_t>& words) {
+    const auto bits = reinterpret_cast<std::uintptr_t>(words.data());
+    return glm::uvec2(static_cast<std::uint32_t>(bits), static_cast<std::uint32_t>(static_cast<std::uint64_t>(bits) >> 32));
+  };
+  ProbeRecord record = probe.record;
+  record.geometry_address = address(probe.geometry);
+  record.radiance_address = address(probe.radiance);
+  return record;
+}
+
+}  // namespace probewalk

@@ -1,0 +1,32 @@
+// From a probe as it is packed to the words that the tracer reads (layout: shaders/shared/probe_layout.h). Run by loader
+// threads; a pure function of the map, so the same pack gives the same words everywhere.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "content/probe/probe_map.h"
+#include "shaders/shared/probe_layout.h"
+
+namespace probewalk {
+
+struct DeviceProbe {
+  std::vector<std::uint32_t> geometry;
+  std::vector<std::uint32_t> radiance;
+  ProbeRecord record{};  // everything but the addresses, room and level
+};
+
+DeviceProbe build_device_probe(const ProbeMap& map);
+
+// Points the record at the words in this process's memory, so that the C++ tracers can run on it.
+// The words must outlive the record's use.
+ProbeRecord record_in_memory(const DeviceProbe& probe);
+
+// Bytes of a probe's two blocks without its cut records, whose number only the map knows.
+std::uint64_t device_probe_bytes(int n, int r, std::size_t cut_cells);
+std::size_t count_cut_cells(const ProbeGeometry& geometry);
+
+// Position as float plus what rounding left.
+void split_position(glm::dvec3 position_m, glm::vec3& hi_m, glm::vec3& lo_m);
+
+}  // namespace probewalk

@@ -1,0 +1,198 @@
+// The tracer: rays against all resident probes. This text is compiled three times: as GLSL (float, on the device), as
+// C++ float and as C++ double (content/probe/tracer_f32.h, tracer_f64.h). The includer provides
+//   real, real2, real3, ivec3           the arithmetic
+//   pw_word(address, index)             a 32-bit word of device memory
+//   pw_word_real(address, index)        the same as a float, widened to real
+//   pw_probe(grid, index)               a ProbeRecord
+//   PW_OUT(type), PW_INOUT(type)        parameter directions
+// No include guard: C++ includes it once a type.
+#include "tracer_walk.h"
+
+// How far ahead of a hand-off the next probe's view is tested, as a fraction of the mean probe spacing.
+#define PW_START_AHEAD real(0.01)
+// Pyramid level of the start test's first look-up (design: fewer-tries, 1).
+#define PW_START_LEVEL 2
+// Progress below this is none: a probe that failed here is not asked again.
+#define PW_PROGRESS_M real(1e-3)
+// Walks a ray can have, whatever the dials say.
+#define PW_TRIES_LIMIT 16
+#define PW_CANDIDATES 8
+// A stop point this far (relative) from a probe's surface is no plausible point of that surface.
+#define PW_PLAUSIBLE real(0.25)
+
+struct RayAnswer {
+  int cls;     // kClassHit, kClassMiss, kClassUnknown
+  real t;      // metres along the unit direction; unknown: how far the ray is known to be free; miss: PW_NEVER
+  int probe;   // that answered, or whose radiance stands in; -1 = none resident
+  bool environment;  // unknown and nothing plausible at the stop point: radiance comes from the direction alone
+  pw_uint lookups;   // dependent reads: pyramid nodes, cells, start tests
+  pw_uint tries;     // walks
+};
+
+// Origin relative to a probe: float-float differences, exact to one ulp however far from the scene's origin.
+PW_FUNCTION real3 relative_origin(ProbeRecord probe, real3 origin_hi, real3 origin_lo) {
+  return (origin_hi - real3(probe.position_hi_m)) + (origin_lo - real3(probe.position_lo_m));
+}
+
+PW_FUNCTION real2 octahedral_uv(real3 x) {
+  real scale = real(1) / (abs(x.x) + abs(x.y) + abs(x.z));
+  real2 p = real2(x.x, x.y) * scale;
+  if (x.z >= real(0)) return p;
+  return real2((real(1) - abs(p.y)) * (p.x < real(0) ? real(-1) : real(1)),
+               (real(1) - abs(p.x)) * (p.y < real(0) ? real(-1) : real(1)));
+}
+
+// w of the probe's vertex nearest to the direction of x.
+PW_FUNCTION real nearest_vertex_w(ProbeRecord probe, real3 x) {
+  int n = 1 << int(probe.n_log2);
+  real2 uv = (octahedral_uv(x) + real2(1, 1)) * (real(n) * real(0.5)) + real2(0.5, 0.5);
+  int i = min(max(int(uv.x), 0), n), j = min(max(int(uv.y), 0), n);
+  return pw_word_real(probe.geometry_address, j * (n + 1) + i);
+}
+
+// Does the probe see the point x (relative to it)? 2: clearly in front of its surface. 1: in front of, or within the
+// margin behind, the nearest vertex. 0: hidden. Counts its look-ups.
+PW_FUNCTION int start_test(ProbeRecord probe, real3 x, real margin, PW_INOUT(pw_uint) lookups) {
+  real len = abs(x.x) + abs(x.y) + abs(x.z);
+  if (len <= real(probe.l_min_m)) return 2;
+  int n = 1 << int(probe.n_log2);
+  real2 uv = (octahedral_uv(x) + real2(1, 1)) * (real(n) * real(0.5));
+  int i = min(max(int(uv.x), 0), n - 1) >> PW_START_LEVEL, j = min(max(int(uv.y), 0), n - 1) >> PW_START_LEVEL;
+  real w = real(1) / len;
+  lookups += 1u;
+  int node = (n + 1) * (n + 1) + pyramid_offset(n, PW_START_LEVEL) + j * (n >> PW_START_LEVEL) + i;
+  if (w > pw_word_real(probe.geometry_address, node)) return 2;
+  lookups += 1u;
+  real surface = nearest_vertex_w(probe, x);
+  return surface <= real(0) || w > surface * (real(1) - margin) ? 1 : 0;
+}
+
+struct CandidateList {
+  int count;
+  int probe[PW_CANDIDATES];
+  real score[PW_CANDIDATES];
+};
+
+// The probes at the corners of the grid cell that holds q (clamped to the grid), by falling score: how well the ray runs
+// away from the probe, less its distance. Probes that are not resident are left out.
+PW_FUNCTION CandidateList cell_candidates(GridConstants grid, TraceConstants dials, real3 q, real3 d) {
+  CandidateList list;
+  list.count = 0;
+  real3 cell = (q - real3(grid.origin_m)) / real3(grid.spacing_m);
+  int cx = min(max(int(floor(min(max(cell.x, real(-1)), real(65536)))), 0), max(0, grid.dims.x - 2));
+  int cy = min(max(int(floor(min(max(cell.y, real(-1)), real(65536)))), 0), max(0, grid.dims.y - 2));
+  int cz = min(max(int(floor(min(max(cell.z, real(-1)), real(65536)))), 0), max(0, grid.dims.z - 2));
+  for (int corner = 0; corner < PW_CANDIDATES; ++corner) {
+    int x = min(cx + (corner & 1), grid.dims.x - 1);
+    int y = min(cy + ((corner >> 1) & 1), grid.dims.y - 1);
+    int z = min(cz + (corner >> 2), grid.dims.z - 1);
+    int id = int(pw_word(grid.table_address, (z * grid.dims.y + y) * grid.dims.x + x));
+    bool wanted = true;
+    for (int k = 0; k < list.count; ++k) wanted = wanted && list.probe[k] != id;
+    if (!wanted) continue;
+    ProbeRecord probe = pw_probe(grid, id);
+    if (probe.n_log2 == 0u) continue;
+    real3 away = q - real3(probe.position_hi_m);
+    real distance = sqrt(away.x * away.x + away.y * away.y + away.z * away.z) + real(1e-6);
+    real cosine = (away.x * d.x + away.y * d.y + away.z * d.z) / distance;
+    real score = cosine - real(dials.distance_weight) * distance * real(grid.inverse_diagonal);
+    int at = list.count;
+    for (; at > 0 && list.score[at - 1] < score; --at) {
+      list.score[at] = list.score[at - 1];
+      list.probe[at] = list.probe[at - 1];
+    }
+    list.score[at] = score;
+    list.probe[at] = id;
+    list.count += 1;
+  }
+  return list;
+}
+
+// Traces a ray from origin_hi + origin_lo (metres, scene coordinates; hi is the float nearest, lo the rest) along the
+// unit direction d. Probes are tried one after the other, each from where the last one's knowledge ended; candidates come
+// from the cell of the current point, then from the cells one and two spacings ahead, then from the origin's; the start
+// test skips those that cannot see the current point (design: fewer-tries, 1).
+PW_FUNCTION RayAnswer trace_ray(GridConstants grid, TraceConstants dials, real3 origin_hi, real3 origin_lo, real3 d,
+                                int start_level) {
+  RayAnswer answer;
+  answer.cls = kClassUnknown;
+  answer.t = real(0);
+  answer.probe = -1;
+  answer.environment = false;
+  answer.lookups = 0u;
+  answer.tries = 0u;
+
+  int failed_probe[PW_TRIES_LIMIT];
+  real failed_t[PW_TRIES_LIMIT];
+  int failures = 0;
+  const int max_tries = min(int(dials.max_tries), PW_TRIES_LIMIT);
+  const real ahead = real(grid.spacing_mean_m);
+  real t = real(0);
+  int stage = 0;
+  // Every turn either walks, of which there are max_tries, or moves to the next of four stages.
+  while (int(answer.tries) < max_tries && stage < 4) {
+    real t_cell = stage == 3 ? real(0) : t + real(stage) * ahead;
+    CandidateList list = cell_candidates(grid, dials, origin_hi + d * t_cell, d);
+    int chosen = -1, doubtful = -1;
+    for (int k = 0; k < list.count && chosen < 0; ++k) {
+      int id = list.probe[k];
+      bool failed = false;
+      for (int f = 0; f < failures; ++f) failed = failed || (failed_probe[f] == id && failed_t[f] >= t);
+      if (failed) continue;
+      if (answer.tries == 0u) {
+        chosen = id;
+        break;
+      }
+      ProbeRecord probe = pw_probe(grid, id);
+      real3 x = relative_origin(probe, origin_hi, origin_lo) + d * (t + PW_START_AHEAD * ahead);
+      int seen = start_test(probe, x, real(dials.start_margin), answer.lookups);
+      if (seen == 2) chosen = id;
+      if (seen == 1 && doubtful < 0) doubtful = id;
+    }
+    if (chosen < 0) chosen = doubtful;
+    if (chosen < 0) {
+      ++stage;
+      continue;
+    }
+    ProbeRecord probe = pw_probe(grid, chosen);
+    WalkState walk = walk_probe(probe, relative_origin(probe, origin_hi, origin_lo), d, t, start_level);
+    answer.tries += 1u;
+    answer.lookups += walk.lookups;
+    if (walk.status == kClassHit || walk.status == kClassMiss) {
+      answer.cls = walk.status;
+      answer.t = walk.status == kClassHit ? walk.t : PW_NEVER;
+      answer.probe = chosen;
+      return answer;
+    }
+    failed_probe[failures] = chosen;
+    failed_t[failures] = max(walk.t, t);
+    ++failures;
+    if (walk.t_safe > t * real(1.00001) + PW_PROGRESS_M) stage = 0;
+    t = max(t, walk.t_safe);
+  }
+
+  // Nobody knows: the ray is free up to t. The probe whose surface lies nearest to the stop point lends its radiance.
+  answer.t = t;
+  CandidateList list = cell_candidates(grid, dials, origin_hi + d * t, d);
+  real best = PW_NEVER, nearest = PW_NEVER;
+  int environment = -1;
+  for (int k = 0; k < list.count; ++k) {
+    ProbeRecord probe = pw_probe(grid, list.probe[k]);
+    real3 x = relative_origin(probe, origin_hi, origin_lo) + d * t;
+    real len = abs(x.x) + abs(x.y) + abs(x.z);
+    if (len < nearest) {
+      nearest = len;
+      environment = list.probe[k];
+    }
+    if (!(len > real(0))) continue;
+    real off = abs(nearest_vertex_w(probe, x) * len - real(1));
+    answer.lookups += 1u;
+    if (off < best) {
+      best = off;
+      answer.probe = list.probe[k];
+    }
+  }
+  answer.environment = !(best < PW_PLAUSIBLE);
+  if (answer.environment) answer.probe = environment;
+  return answer;
+}

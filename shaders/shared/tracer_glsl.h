@@ -1,0 +1,26 @@
+// The shared tracer on the device. The including shader enables GL_EXT_buffer_reference, GL_EXT_buffer_reference_uvec2
+// and GL_EXT_scalar_block_layout. Every float operation of the module is decorated NoContraction when it is built
+// (shaders/CMakeLists.txt), so the arithmetic is the C++ one's.
+#ifndef PROBEWALK_SHADERS_SHARED_TRACER_GLSL_H
+#define PROBEWALK_SHADERS_SHARED_TRACER_GLSL_H
+
+#include "probe_layout.h"
+
+#define real float
+#define real2 vec2
+#define real3 vec3
+#define PW_OUT(type) out type
+#define PW_INOUT(type) inout type
+
+layout(buffer_reference, std430, buffer_reference_align = 4) readonly buffer PwWords { uint v[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer PwProbes { ProbeRecord v[]; };
+
+uint pw_word(uvec2 address, int index) { return PwWords(address).v[index]; }
+float pw_word_real(uvec2 address, int index) { return uintBitsToFloat(PwWords(address).v[index]); }
+float pw_float_from_bits(uint bits) { return uintBitsToFloat(bits); }
+ProbeRecord pw_probe(GridConstants grid, int index) { return PwProbes(grid.probes_address).v[index]; }
+
+#include "tracer.h"
+#include "tracer_radiance.h"
+
+#endif

@@ -1,0 +1,485 @@
+// One ray against one probe: the octant-affine walk. Compiled as GLSL, as C++ float and as C++ double; whoever includes
+// it provides `real`, `real2`, `real3` and the memory access of tracer.h. No include guard: C++ includes it once a type.
+//
+// In each octant around the probe every plane of the world is affine in the map's coordinates (U, V), and a ray is a
+// straight line there whose own w = 1 / L1 distance is affine along it. So each triangle of the vertex grid is a planar
+// triangle of the world, and the walk needs one compare a node, no step size and no thickness (design: tracer, 2).
+//
+// What the walk guarantees on any data: it ends (every step moves on by at least one cell), it forms no NaN and no
+// infinity from finite rays, and with the pyramid it visits the same surfaces as without, bit for bit.
+
+// Stands for "never" in ray parameters; finite, so that no proof rests on the device's infinities.
+#define PW_NEVER real(1e30)
+// Status of a walk beside the answers of probe_layout.h.
+#define PW_WALKING (-1)
+#define PW_CLASS_BEHIND 3  // the ray's start lies behind the probe's surface
+
+// A piece of the ray inside one octant, in quadrant-local map coordinates [0, half]^2; everything is linear in lambda.
+struct OctantSegment {
+  real2 uv0;   // map coordinates at lambda 0, in cells
+  real2 d_uv;  // change to lambda 1
+  real w0;     // ray's 1/L1 at lambda 0
+  real dw;
+  real tw0;  // t * w at lambda 0: t = lerp(tw) / lerp(w)
+  real dtw;
+  pw_ivec2 side;  // signs of x and y: which quadrant of the map
+};
+
+struct WalkState {
+  int status;
+  real t;       // of a hit; of unknown and behind: where the knowledge ends
+  real t_safe;  // the ray is known to be free from its start to here
+  bool known;   // the current point has been proven to lie above the surface
+  pw_uint lookups;
+};
+
+PW_FUNCTION real segment_t(OctantSegment s, real lambda) {
+  return min((s.tw0 + lambda * s.dtw) / max(s.w0 + lambda * s.dw, real(1e-30)), PW_NEVER);
+}
+
+// Offset of pyramid level l >= 1 behind the vertices, in words: the levels before it have n^2/4 + ... words.
+PW_FUNCTION int pyramid_offset(int n, int level) {
+  int finer = n >> (level - 1);
+  return (n * n - finer * finer) / 3;
+}
+
+// The ray's height above one planar piece at its two ends decides. Returns true when the walk ends here. `cut`: the
+// piece ends in mid-air, so being below it on entry means having passed through a wall that nobody has seen.
+PW_FUNCTION bool meet_piece(OctantSegment s, real t_start, real texel, bool cut, real ray_w, real f0, real f1,
+                            real lambda0, real lambda1, PW_INOUT(WalkState) state) {
+  if (!state.known) {
+    if (f0 <= real(0)) {
+      // On a hand-off the start may lie on the surface itself, a texel behind by rounding: that is a hit.
+      bool touching = t_start > real(0) && -f0 < ray_w * texel;
+      state.status = touching ? kClassHit : PW_CLASS_BEHIND;
+      state.t = max(t_start, segment_t(s, lambda0));
+      state.t_safe = state.t;
+      return true;
+    }
+    state.known = true;
+  } else if (cut && f0 <= real(0)) {
+    state.status = kClassUnknown;
+    state.t = max(t_start, segment_t(s, lambda0));
+    state.t_safe = state.t;
+    return true;
+  }
+  if (f1 <= real(0)) {
+    real tau = f0 > real(0) ? f0 / (f0 - f1) : real(0);
+    state.status = kClassHit;
+    state.t = max(t_start, segment_t(s, lambda0 + (lambda1 - lambda0) * tau));
+    state.t_safe = max(t_start, segment_t(s, lambda0));
+    return true;
+  }
+  return false;
+}
+
+PW_FUNCTION real2 unpack_slopes(pw_uint word) {
+  int x = int(word << 16) >> 16, y = int(word) >> 16;
+  return real2(real(x), real(y)) * real(kSlopeClamp / 32767.0f);
+}
+
+// Fraction number k of a cut record: where along its edge the surface ends.
+PW_FUNCTION real cut_fraction(pw_uint word, int k) {
+  return (real((word >> pw_uint(6 * k)) & 63u) + real(0.5)) / real(64);
+}
+
+// Where a linear function that is a at 0 and b at 1 changes sign; 1 when it does not.
+PW_FUNCTION real sign_change(real a, real b) {
+  if ((a < real(0)) == (b < real(0))) return real(1);
+  real at = a / (a - b);
+  return at > real(0) && at < real(1) ? at : real(1);
+}
+
+// A triangle with disconnected edges: cut lines split it into regions, each with its own vertex's plane. The ray's
+// piece runs from p0 (w r0, lambda l0) to p1 in the cell's unit square. corner_w: w at v0, v1, v2.
+PW_FUNCTION bool meet_cut_triangle(pw_uvec2 geometry, int record, bool high, int mask, real3 corner_w, OctantSegment s,
+                                   real t_start, real texel, real l0, real r0, real2 p0, real l1, real r1, real2 p1,
+                                   PW_INOUT(WalkState) state) {
+  pw_uint fractions = pw_word(geometry, record);
+  real2 v0 = high ? real2(1, 1) : real2(0, 0);
+  real2 v1 = real2(1, 0);
+  real2 v2 = real2(0, 1);
+  // Barycentric coordinates of both ends.
+  real3 a, b;
+  a.y = high ? real(1) - p0.y : p0.x;
+  a.z = high ? real(1) - p0.x : p0.y;
+  a.x = real(1) - a.y - a.z;
+  b.y = high ? real(1) - p1.y : p1.x;
+  b.z = high ? real(1) - p1.x : p1.y;
+  b.x = real(1) - b.y - b.z;
+  int first = record + (high ? 5 : 2);
+  real2 slope0 = unpack_slopes(pw_word(geometry, first)) * corner_w.x;
+  real2 slope1 = unpack_slopes(pw_word(geometry, first + 1)) * corner_w.y;
+  real2 slope2 = unpack_slopes(pw_word(geometry, first + 2)) * corner_w.z;
+
+  // Two disconnected edges leave one vertex alone: one cut line through the edges' fractions, the other two vertices
+  // share a plane. Else three regions, each nearest to its vertex.
+  bool lone = mask == 5 || mask == 3 || mask == 6;
+  real break0 = real(1), break1 = real(1), break2 = real(1);
+  real h0 = real(0), h1 = real(0);
+  real lone_w = real(0), pair_w = real(0);
+  real2 lone_at = v0, lone_slope = slope0, pair_at = v1, pair_slope = slope1;
+  if (lone) {
+    real f01 = high ? real(1) - cut_fraction(fractions, 3) : cut_fraction(fractions, 0);
+    real f12 = cut_fraction(fractions, 2);
+    real f20 = high ? cut_fraction(fractions, 4) : real(1) - cut_fraction(fractions, 1);
+    // Parts of the edges to the next two vertices that the lone vertex owns.
+    real own_next, own_last;
+    real2 a2, b2;
+    real2 next_at, last_at, next_slope, last_slope;
+    real next_w, last_w;
+    if (mask == 5) {
+      own_next = f01; own_last = real(1) - f20;
+      a2 = real2(a.y, a.z); b2 = real2(b.y, b.z);
+      lone_w = corner_w.x; lone_at = v0; lone_slope = slope0;
+      next_w = corner_w.y; next_at = v1; next_slope = slope1;
+      last_w = corner_w.z; last_at = v2; last_slope = slope2;
+    } else if (mask == 3) {
+      own_next = f12; own_last = real(1) - f01;
+      a2 = real2(a.z, a.x); b2 = real2(b.z, b.x);
+      lone_w = corner_w.y; lone_at = v1; lone_slope = slope1;
+      next_w = corner_w.z; next_at = v2; next_slope = slope2;
+      last_w = corner_w.x; last_at = v0; last_slope = slope0;
+    } else {
+      own_next = f20; own_last = real(1) - f12;
+      a2 = real2(a.x, a.y); b2 = real2(b.x, b.y);
+      lone_w = corner_w.z; lone_at = v2; lone_slope = slope2;
+      next_w = corner_w.x; next_at = v0; next_slope = slope0;
+      last_w = corner_w.y; last_at = v1; last_slope = slope1;
+    }
+    own_next = max(own_next, real(0.01));
+    own_last = max(own_last, real(0.01));
+    h0 = a2.x / own_next + a2.y / own_last - real(1);
+    h1 = b2.x / own_next + b2.y / own_last - real(1);
+    break0 = sign_change(h0, h1);
+    // The pair's plane: mean slopes, corrected so that it goes through both vertices, clamped, hung at the nearer one.
+    bool next_nearer = next_w >= last_w;
+    pair_w = next_nearer ? next_w : last_w;
+    pair_at = next_nearer ? next_at : last_at;
+    real other_w = next_nearer ? last_w : next_w;
+    real2 edge = next_nearer ? last_at - next_at : next_at - last_at;
+    pair_slope = (next_slope + last_slope) * real(0.5);
+    real along = pair_slope.x * edge.x + pair_slope.y * edge.y;
+    pair_slope = pair_slope + edge * ((other_w - pair_w - along) / (edge.x * edge.x + edge.y * edge.y));
+    real steepest = max(abs(pair_slope.x), abs(pair_slope.y)), limit = real(kSlopeClamp) * pair_w;
+    if (steepest > limit) pair_slope = pair_slope * (limit / steepest);
+  } else {
+    real x = sign_change(a.x - a.y, b.x - b.y);
+    real y = sign_change(a.y - a.z, b.y - b.z);
+    real z = sign_change(a.z - a.x, b.z - b.x);
+    break0 = min(min(x, y), z);
+    break2 = max(max(x, y), z);
+    break1 = max(min(x, y), min(max(x, y), z));
+  }
+
+  real from = real(0);
+  for (int piece = 0; piece < 4; ++piece) {
+    real to = piece == 0 ? break0 : piece == 1 ? break1 : piece == 2 ? break2 : real(1);
+    if (piece > 0 && from >= real(1)) break;
+    real middle = (from + to) * real(0.5);
+    real w, plane_x, plane_y;
+    real2 at;
+    if (lone) {
+      bool alone = h0 + (h1 - h0) * middle < real(0);
+      w = alone ? lone_w : pair_w;
+      at = alone ? lone_at : pair_at;
+      plane_x = alone ? lone_slope.x : pair_slope.x;
+      plane_y = alone ? lone_slope.y : pair_slope.y;
+    } else {
+      real3 m = a + (b - a) * middle;
+      int owner = m.x >= m.y && m.x >= m.z ? 0 : m.y >= m.z ? 1 : 2;
+      w = owner == 0 ? corner_w.x : owner == 1 ? corner_w.y : corner_w.z;
+      at = owner == 0 ? v0 : owner == 1 ? v1 : v2;
+      plane_x = owner == 0 ? slope0.x : owner == 1 ? slope1.x : slope2.x;
+      plane_y = owner == 0 ? slope0.y : owner == 1 ? slope1.y : slope2.y;
+    }
+    if (w <= real(0)) {
+      state.known = true;  // sky: nothing to be behind of
+    } else {
+      real lambda0 = l0 + (l1 - l0) * from, lambda1 = l0 + (l1 - l0) * to;
+      real ray0 = r0 + (r1 - r0) * from, ray1 = r0 + (r1 - r0) * to;
+      real2 q0 = p0 + (p1 - p0) * from - at, q1 = p0 + (p1 - p0) * to - at;
+      real f0 = ray0 - (w + plane_x * q0.x + plane_y * q0.y);
+      real f1 = ray1 - (w + plane_x * q1.x + plane_y * q1.y);
+      if (meet_piece(s, t_start, texel, true, ray0, f0, f1, lambda0, lambda1, state)) return true;
+    }
+    from = to;
+  }
+  return false;
+}
+
+// The walk through one octant's segment. Returns true when it ends there; state.status says how.
+PW_FUNCTION bool walk_segment(ProbeRecord probe, OctantSegment s, real t_start, int start_level,
+                              PW_INOUT(WalkState) state) {
+  const int n = 1 << int(probe.n_log2);
+  const int half_n = n >> 1;
+  const int top = min(start_level, int(probe.n_log2) - 1);
+  const int vertices = (n + 1) * (n + 1);
+  const int masks = vertices + (n * n - 4) / 3;
+  const int records = masks + n * n / 16;
+  const pw_uvec2 geometry = probe.geometry_address;
+  const real texel = real(2) / real(n);
+
+  // A move of less than 1e-12 cells is none: its reciprocal would not be finite.
+  const int step_x = abs(s.d_uv.x) <= real(1e-12) ? 0 : s.d_uv.x > real(0) ? 1 : -1;
+  const int step_y = abs(s.d_uv.y) <= real(1e-12) ? 0 : s.d_uv.y > real(0) ? 1 : -1;
+  const real per_u = step_x == 0 ? real(0) : real(1) / s.d_uv.x;
+  const real per_v = step_y == 0 ? real(0) : real(1) / s.d_uv.y;
+  int ix = step_x < 0 ? int(ceil(s.uv0.x)) - 1 : int(floor(s.uv0.x));
+  int iy = step_y < 0 ? int(ceil(s.uv0.y)) - 1 : int(floor(s.uv0.y));
+  ix = min(max(ix, 0), half_n - 1);
+  iy = min(max(iy, 0), half_n - 1);
+
+  int level = top;
+  real lambda = real(0), w_in = s.w0;
+  for (;;) {
+    // The node's far lines and where the ray leaves it.
+    int line_x = ((ix >> level) + (step_x > 0 ? 1 : 0)) << level;
+    int line_y = ((iy >> level) + (step_y > 0 ? 1 : 0)) << level;
+    real exit_x = step_x == 0 ? PW_NEVER : (real(line_x) - s.uv0.x) * per_u;
+    real exit_y = step_y == 0 ? PW_NEVER : (real(line_y) - s.uv0.y) * per_v;
+    bool leave_x = exit_x <= exit_y;
+    real crossing = leave_x ? exit_x : exit_y;
+    real exit = max(crossing, lambda);
+    bool last = !(exit < real(1));
+    if (last) exit = real(1);
+    real w_out = s.w0 + exit * s.dw;
+    real w_low = min(w_in, w_out);
+    if (level > 0) {
+      int half_nodes = half_n >> level;
+      int node_x = ix >> level, node_y = iy >> level;
+      int gx = s.side.x > 0 ? half_nodes + node_x : half_nodes - 1 - node_x;
+      int gy = s.side.y > 0 ? half_nodes + node_y : half_nodes - 1 - node_y;
+      real maximum = pw_word_real(geometry, vertices + pyramid_offset(n, level) + gy * 2 * half_nodes + gx);
+      state.lookups += 1u;
+      if (!(maximum <= real(0)) && w_low <= maximum) {
+        --level;
+        continue;
+      }
+      state.known = true;
+    } else {
+      int vx = half_n + s.side.x * ix, vy = half_n + s.side.y * iy;
+      int corner = vy * (n + 1) + vx;
+      int row = s.side.y * (n + 1);
+      real w00 = pw_word_real(geometry, corner);
+      real w10 = pw_word_real(geometry, corner + s.side.x);
+      real w01 = pw_word_real(geometry, corner + row);
+      real w11 = pw_word_real(geometry, corner + row + s.side.x);
+      state.lookups += 1u;
+      real maximum = max(max(w00, w10), max(w01, w11));
+      int record = -1;
+      bool above = maximum <= real(0) || w_low > maximum * real(kCutExtension);
+      if (!above) {
+        if (probe.has_cuts != 0u) {
+          int gx = s.side.x > 0 ? half_n + ix : half_n - 1 - ix;
+          int gy = s.side.y > 0 ? half_n + iy : half_n - 1 - iy;
+          int cell = gy * n + gx;
+          pw_uint mask = pw_word(geometry, masks + 2 * (cell >> 5));
+          pw_uint bit = 1u << pw_uint(cell & 31);
+          if ((mask & bit) != 0u) {
+            pw_uint before = pw_word(geometry, masks + 2 * (cell >> 5) + 1);
+            record = records + kCutRecordWords * int(before + pw_uint(bitCount(mask & (bit - 1u))));
+          }
+        }
+        above = record < 0 && w_low > maximum;
+      }
+      if (above) {
+        state.known = true;
+      } else {
+        // Entry and exit in the cell's unit square; the cell's diagonal x + y = 1 parts low from high triangle.
+        real2 corner_uv = real2(real(ix), real(iy));
+        real2 p_in = s.uv0 + s.d_uv * lambda - corner_uv;
+        real2 p_out = s.uv0 + s.d_uv * exit - corner_uv;
+        real side_in = p_in.x + p_in.y - real(1), side_out = p_out.x + p_out.y - real(1);
+        bool both_low = side_in <= real(0) && side_out <= real(0);
+        bool both_high = !both_low && side_in >= real(0) && side_out >= real(0);
+        bool crosses = !(both_low || both_high);
+        bool high = both_low ? false : both_high ? true : side_in > real(0);
+        real l0 = lambda, r0 = w_in, l1 = exit, r1 = w_out;
+        real2 p0 = p_in, p1 = p_out;
+        if (crosses) {
+          real at = side_in / (side_in - side_out);
+          l1 = lambda + (exit - lambda) * at;
+          r1 = w_in + (w_out - w_in) * at;
+          p1 = p_in + (p_out - p_in) * at;
+        }
+        pw_uint flags = record < 0 ? 0u : pw_word(geometry, record + 1);
+        for (int part = 0; part < 2; ++part) {
+          int mask = int(flags >> (high ? 4u : 0u)) & 7;
+          real w_corner = high ? w11 : w00;
+          if (mask != 0) {
+            if (meet_cut_triangle(geometry, record, high, mask, real3(w_corner, w10, w01), s, t_start, texel, l0, r0,
+                                  p0, l1, r1, p1, state)) {
+              return true;
+            }
+          } else if (w_corner <= real(0) && w10 <= real(0) && w01 <= real(0)) {
+            state.known = true;
+          } else {
+            real gu = high ? w11 - w01 : w10 - w00, gv = high ? w11 - w10 : w01 - w00;
+            real2 from_corner = high ? real2(1, 1) : real2(0, 0);
+            real2 q0 = p0 - from_corner, q1 = p1 - from_corner;
+            real f0 = r0 - (w_corner + gu * q0.x + gv * q0.y);
+            real f1 = r1 - (w_corner + gu * q1.x + gv * q1.y);
+            if (meet_piece(s, t_start, texel, false, r0, f0, f1, l0, l1, state)) return true;
+          }
+          if (!crosses) break;
+          crosses = false;
+          high = !high;
+          l0 = l1; r0 = r1; p0 = p1;
+          l1 = exit; r1 = w_out; p1 = p_out;
+        }
+      }
+    }
+    if (last) return false;
+
+    // Step over the exit line. The other coordinate's cell is decided by the same comparisons of line parameters as a
+    // cell-by-cell walk would make, so that skipping nodes changes nothing: lines passed strictly before an x exit,
+    // before or at a y exit.
+    int old_x = ix, old_y = iy;
+    if (leave_x) {
+      ix = step_x > 0 ? line_x : line_x - 1;
+      if (step_y != 0 && level > 0) {
+        int guess = int(floor(s.uv0.y + exit * s.d_uv.y));
+        int low = step_y > 0 ? iy : line_y, high = step_y > 0 ? line_y - 1 : iy;
+        guess = min(max(guess, low), high);
+        if (step_y > 0) {
+          if (guess < high && (real(guess + 1) - s.uv0.y) * per_v < crossing) ++guess;
+          else if (guess > low && !((real(guess) - s.uv0.y) * per_v < crossing)) --guess;
+        } else {
+          if (guess > low && (real(guess) - s.uv0.y) * per_v < crossing) --guess;
+          else if (guess < high && !((real(guess + 1) - s.uv0.y) * per_v < crossing)) ++guess;
+        }
+        iy = guess;
+      }
+    } else {
+      iy = step_y > 0 ? line_y : line_y - 1;
+      if (step_x != 0 && level > 0) {
+        int guess = int(floor(s.uv0.x + exit * s.d_uv.x));
+        int low = step_x > 0 ? ix : line_x, high = step_x > 0 ? line_x - 1 : ix;
+        guess = min(max(guess, low), high);
+        if (step_x > 0) {
+          if (guess < high && (real(guess + 1) - s.uv0.x) * per_u <= crossing) ++guess;
+          else if (guess > low && !((real(guess) - s.uv0.x) * per_u <= crossing)) --guess;
+        } else {
+          if (guess > low && (real(guess) - s.uv0.x) * per_u <= crossing) --guess;
+          else if (guess < high && !((real(guess + 1) - s.uv0.x) * per_u <= crossing)) ++guess;
+        }
+        ix = guess;
+      }
+    }
+    if (ix < 0 || iy < 0 || ix >= half_n || iy >= half_n) return false;
+    lambda = exit;
+    w_in = w_out;
+    if (level < top && (((ix ^ old_x) | (iy ^ old_y)) >> (level + 1)) != 0) ++level;
+  }
+}
+
+// Does the ray cross x = 0 on this axis, and when? false when it never does within PW_NEVER.
+PW_FUNCTION bool axis_crossing(real x, real d, PW_OUT(real) t) {
+  t = PW_NEVER;
+  if (d == real(0) || abs(x) >= abs(d) * PW_NEVER) return false;
+  t = -x / d;
+  return true;
+}
+
+PW_FUNCTION real octant_sign(bool crosses, real t, real t_start, real x, real d) {
+  real forward = d > real(0) ? real(1) : real(-1);
+  return !crosses ? (x < real(0) ? real(-1) : real(1)) : t > t_start ? -forward : forward;
+}
+
+// Walks the ray x + t d, t >= t_start, through the probe's map. x: origin relative to the probe. start_level: pyramid
+// level of the first look, 0 = cell by cell. Signs come from comparing crossing times, never from evaluating points.
+PW_FUNCTION WalkState walk_probe(ProbeRecord probe, real3 x, real3 d, real t_start, int start_level) {
+  WalkState state;
+  state.status = PW_WALKING;
+  state.t = PW_NEVER;
+  state.t_safe = t_start;
+  state.known = false;
+  state.lookups = 0u;
+  const real half_n = real(1 << int(probe.n_log2 - 1u));
+  const real l_min = real(probe.l_min_m);
+
+  real3 t_cross, s;
+  real t_axis;
+  bool crosses_x = axis_crossing(x.x, d.x, t_axis); t_cross.x = t_axis;
+  bool crosses_y = axis_crossing(x.y, d.y, t_axis); t_cross.y = t_axis;
+  bool crosses_z = axis_crossing(x.z, d.z, t_axis); t_cross.z = t_axis;
+  s.x = octant_sign(crosses_x, t_cross.x, t_start, x.x, d.x);
+  s.y = octant_sign(crosses_y, t_cross.y, t_start, x.y, d.y);
+  s.z = octant_sign(crosses_z, t_cross.z, t_start, x.z, d.z);
+  if (!crosses_x || t_cross.x <= t_start) t_cross.x = PW_NEVER;
+  if (!crosses_y || t_cross.y <= t_start) t_cross.y = PW_NEVER;
+  if (!crosses_z || t_cross.z <= t_start) t_cross.z = PW_NEVER;
+
+  real t_a = t_start;
+  int crossed = -1;  // axis whose plane the segment starts on
+  for (int k = 0; k < 4; ++k) {
+    // Next crossing; ties make a segment of no length: flip the sign, no work.
+    real t_b = min(min(t_cross.x, t_cross.y), t_cross.z);
+    bool endless = !(t_b < PW_NEVER);
+    int axis = endless ? -1 : t_cross.x == t_b ? 0 : t_cross.y == t_b ? 1 : 2;
+    if (endless || t_b > t_a) {
+      real3 m0 = max(real3(0), s * (x + d * t_a));
+      if (crossed == 0) m0.x = real(0);
+      if (crossed == 1) m0.y = real(0);
+      if (crossed == 2) m0.z = real(0);
+      real3 sd = s * d;
+      real3 m1 = endless ? max(real3(0), sd) : max(real3(0), s * (x + d * t_b));
+      if (axis == 0) m1.x = real(0);
+      if (axis == 1) m1.y = real(0);
+      if (axis == 2) m1.z = real(0);
+      real len0 = m0.x + m0.y + m0.z, len1 = m1.x + m1.y + m1.z, slope = sd.x + sd.y + sd.z;
+      // Near clip: inside the empty octahedron nothing needs proof. Covers rays through and from the probe's centre.
+      real t0 = t_a, t1 = t_b;
+      bool skip = false;
+      if (len0 < l_min) {
+        state.known = true;
+        skip = true;
+        if (endless || len1 >= l_min) {
+          t0 = t_a + (l_min - len0) / max(slope, real(1e-30));
+          if (t0 < t_b) {
+            m0 = max(real3(0), s * (x + d * t0));
+            len0 = m0.x + m0.y + m0.z;
+            skip = !(len0 > real(0.5) * l_min);
+          }
+        }
+      } else if (!endless && len1 < l_min) {
+        t1 = t_a + (len0 - l_min) / max(-slope, real(1e-30));
+        if (!(t1 > t_a)) {
+          skip = true;
+          state.known = true;
+        } else {
+          t1 = min(t1, t_b);
+          m1 = max(real3(0), s * (x + d * t1));
+          len1 = max(m1.x + m1.y + m1.z, real(0.5) * l_min);
+        }
+      }
+      if (!(len0 > real(0)) || !(len1 > real(0))) skip = true;
+      if (!skip) {
+        // Upper octants: (x, y) / L; lower ones folded outwards, as sums, so that nothing cancels.
+        OctantSegment segment;
+        bool upper = s.z > real(0);
+        real w0 = real(1) / len0, w1 = real(1) / len1;
+        real2 a0 = upper ? real2(m0.x, m0.y) : real2(m0.x + m0.z, m0.y + m0.z);
+        real2 a1 = upper ? real2(m1.x, m1.y) : real2(m1.x + m1.z, m1.y + m1.z);
+        segment.uv0 = a0 * (w0 * half_n);
+        segment.d_uv = a1 * (w1 * half_n) - segment.uv0;
+        segment.w0 = w0;
+        segment.dw = (endless ? real(0) : w1) - w0;
+        segment.tw0 = t0 * w0;
+        segment.dtw = (endless ? w1 : t1 * w1) - segment.tw0;
+        segment.side = pw_ivec2(s.x < real(0) ? -1 : 1, s.y < real(0) ? -1 : 1);
+        if (walk_segment(probe, segment, t_start, start_level, state)) return state;
+      }
+      if (endless) break;
+      t_a = t_b;
+    }
+    crossed = axis;
+    if (axis == 0) { t_cross.x = PW_NEVER; s.x = -s.x; }
+    if (axis == 1) { t_cross.y = PW_NEVER; s.y = -s.y; }
+    if (axis == 2) { t_cross.z = PW_NEVER; s.z = -s.z; }
+  }
+  // Every finite point of the ray was proven to lie above the surface.
+  state.status = kClassMiss;
+  return state;
+}
