@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <string>
 #include <vector>
 
@@ -60,6 +61,10 @@ class Device {
   float timestamp_period_ns() const;
   // Errors and warnings that the validation layer has reported so far.
   std::uint32_t validation_messages() const;
+  // Bytes of device memory allocated through this device and not freed, as vkAllocateMemory saw them.
+  std::uint64_t allocated_bytes() const;
+  // To be held around calls of others that use the queue (xrEndFrame and the like, vkQueuePresentKHR).
+  [[nodiscard]] std::unique_lock<std::mutex> lock_queue() const;
   // Serialises vkQueueSubmit and friends between the frame thread, the loader and the mirror.
   void submit(const VkSubmitInfo2& info, VkFence fence) const;
   void wait_idle() const;

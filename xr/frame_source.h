@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "render/device.h"
+#include "render/frame_target.h"
 
 namespace probewalk {
 
@@ -32,19 +33,6 @@ struct ViewPose {
   glm::dvec3 position_m{0.0};
   glm::dquat orientation{1.0, 0.0, 0.0, 0.0};
   float fov_left_rad = -0.7f, fov_right_rad = 0.7f, fov_up_rad = 0.7f, fov_down_rad = -0.7f;
-};
-
-// What the frame's picture is drawn into: a colour attachment with one layer a view, in `initial_layout` when handed
-// out, to be left in `final_layout`.
-struct FrameTarget {
-  VkImage image = VK_NULL_HANDLE;
-  VkFormat format = VK_FORMAT_UNDEFINED;  // an sRGB format: the attachment encodes
-  VkExtent2D extent{};
-  std::uint32_t layers = 0;
-  VkImageLayout initial_layout = VK_IMAGE_LAYOUT_UNDEFINED;
-  VkImageLayout final_layout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
-  VkSemaphore wait_before = VK_NULL_HANDLE;     // image available (window), or none
-  VkSemaphore signal_after = VK_NULL_HANDLE;    // rendering done (window), or none
 };
 
 class FrameSource {

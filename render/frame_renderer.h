@@ -1,0 +1,77 @@
+// Draws frames: trace, then resolve. Two frames may be in flight. A frame is
+//   record(target) -> write(constants, the later the better) -> submit()
+// on one thread; the poses are read by the device only when the commands run.
+#pragma once
+
+#include <volk.h>
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+
+#include "render/device.h"
+#include "render/frame_target.h"
+#include "render/gpu_clock.h"
+#include "render/probe_store.h"
+#include "render/stereo_tracer.h"
+
+namespace probewalk {
+
+inline constexpr std::uint32_t kFrameSlots = 2;
+
+struct FrameRendererOptions {
+  TracerOptions tracer;
+  VkFormat target_format = VK_FORMAT_R8G8B8A8_SRGB;
+};
+
+// What a frame is drawn with, beside what the store holds.
+struct FrameSettings {
+  TraceConstants trace{};   // radiance_scale as the pack says
+  float exposure = 1.0f;    // cd/m^2 * exposure = 1 is display white before the tone curve (exposure_from_ev)
+  float fade = 0.0f;        // 0 = picture, 1 = black
+};
+
+// Device times of a finished frame.
+struct FrameGpuTimes {
+  std::uint64_t frame = 0;  // number that submit() returned
+  GpuInterval trace, resolve;
+  GpuInterval whole;  // from the first pass's begin to the last one's end
+  bool calibrated = false;           // on CLOCK_MONOTONIC; else only differences mean something
+  std::int64_t max_deviation_ns = 0;
+};
+
+class FrameRenderer {
+ public:
+  // `store` must have been made for kFrameSlots slots, and is driven by this from now on.
+  FrameRenderer(const Device& device, ProbeStore& store, const FrameRendererOptions& options);
+  // Waits for the frames in flight.
+  ~FrameRenderer();
+  FrameRenderer(const FrameRenderer&) = delete;
+  FrameRenderer& operator=(const FrameRenderer&) = delete;
+
+  // Waits until the frame before the last has finished, takes in what has streamed, records the passes. The target has
+  // the options' format, and as many layers as there are views.
+  void record(const FrameTarget& target);
+  // Writes the views' poses and the settings; callable again until submit. As many views as in the options.
+  void write(std::span<const ViewConstants> views, const FrameSettings& settings);
+  // Returns the frame's number, from 1.
+  std::uint64_t submit();
+
+  // Bytes that the recorded frame copies to the device.
+  std::uint64_t bytes_copied() const;
+  // Times of the oldest finished frame that has not been taken yet, if any. Does not block. Times not taken before
+  // their slot is used again (two frames later) are kept, up to 64 of them.
+  std::optional<FrameGpuTimes> take_times();
+  // Waits until all frames submitted have finished.
+  void wait();
+
+  // Radiance, distance and counts of the last frame; read them after wait().
+  const StereoTracer& tracer() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace probewalk

@@ -1,0 +1,73 @@
+// The rooms that are resident on the device. Loader threads hand in the words of a room's level; the frame thread swaps
+// what has arrived into the table of probes at a frame's edge. Each room shows its finest resident level.
+#pragma once
+
+#include <volk.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "content/bake/placement.h"
+#include "content/probe/device_probe.h"
+#include "render/device.h"
+
+namespace probewalk {
+
+struct ProbeStoreOptions {
+  std::uint32_t frame_slots = 2;
+  // Copied by the queue in one frame at most, where the CPU cannot write the device's memory itself.
+  std::uint64_t upload_bytes_per_frame = 8u << 20;
+  // Copy through the queue even where the CPU could write the device's memory.
+  bool always_stage = false;
+};
+
+// A room's probes at one level, as they lie on the device.
+struct RoomUpload {
+  std::uint32_t room = 0;
+  std::uint32_t level = 0;        // higher is finer
+  std::uint32_t first_probe = 0;  // global index of the room's first probe
+  std::vector<DeviceProbe> probes;
+};
+
+class ProbeStore {
+ public:
+  // `grid` serves `probe_count` probes; its entries must be below that. Nothing is resident yet.
+  ProbeStore(const Device& device, const ProbeGrid& grid, std::uint32_t probe_count, const ProbeStoreOptions& options = {});
+  ~ProbeStore();
+  ProbeStore(const ProbeStore&) = delete;
+  ProbeStore& operator=(const ProbeStore&) = delete;
+
+  // Device bytes that the words of these probes take.
+  static std::uint64_t bytes_of(const std::vector<DeviceProbe>& probes);
+
+  // Any thread. Allocates, and copies the words where the device's memory can be written directly; otherwise into
+  // staging memory that later frames copy from. The level shows from a following begin_frame on. Replaces an earlier
+  // upload of the same room and level. Throws VulkanError when device memory is exhausted: nothing has changed then.
+  void upload(const RoomUpload& room);
+  // Any thread. The level stops showing at the next begin_frame; its memory is freed when no frame reads it any more.
+  void evict(std::uint32_t room, std::uint32_t level);
+
+  // Frame thread, once a frame, with the slot's previous frame finished: frees what frames up to `completed_frame`
+  // alone could read, records copies within the budget into `commands`, and writes the slot's table. Returns the number
+  // of bytes that `commands` copies (0: nothing was recorded).
+  std::uint64_t begin_frame(VkCommandBuffer commands, std::uint32_t slot, std::uint64_t frame,
+                            std::uint64_t completed_frame);
+  // What the frame in `slot` traces against.
+  const GridConstants& grid(std::uint32_t slot) const;
+
+  // Any thread.
+  bool idle() const;                                    // everything handed in has arrived and shows
+  int level_shown(std::uint32_t room) const;            // as of the last begin_frame; -1 = none
+  bool is_resident(std::uint32_t room, std::uint32_t level) const;  // shown, or finer than needed and ready
+  std::uint64_t device_bytes() const;                   // of probe data, retired ones included until freed
+  std::uint32_t queue_depth() const;                    // uploads that wait for the queue
+  std::uint64_t bytes_uploaded() const;                 // since construction
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace probewalk

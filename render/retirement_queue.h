@@ -1,0 +1,27 @@
+// Holds what the GPU may still read until the frame that could read it last has finished.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <utility>
+
+namespace probewalk {
+
+template <typename Resource>
+class RetirementQueue {
+ public:
+  // `last_frame` is the last frame whose commands may use the resource; frames are retired in rising order.
+  void retire(Resource resource, std::uint64_t last_frame) {
+    retired_.emplace_back(last_frame, std::move(resource));
+  }
+  // Destroys what no frame after `completed_frame` uses.
+  void release(std::uint64_t completed_frame) {
+    while (!retired_.empty() && retired_.front().first <= completed_frame) retired_.pop_front();
+  }
+  bool empty() const { return retired_.empty(); }
+
+ private:
+  std::deque<std::pair<std::uint64_t, Resource>> retired_;
+};
+
+}  // namespace probewalk

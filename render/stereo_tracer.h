@@ -1,0 +1,50 @@
+// Traces every pixel of N views against the resident probes, in one dispatch (z = view).
+#pragma once
+
+#include <volk.h>
+
+#include <cstdint>
+
+#include "render/device.h"
+#include "render/image.h"
+
+namespace probewalk {
+
+struct TracerOptions {
+  VkExtent2D extent_px{};   // of each view
+  std::uint32_t views = 2;  // 1 .. kMaxViews
+  bool aov = false;         // also write class, probe and counts
+};
+
+// Distance of a miss, metres.
+inline constexpr float kMissDistance_m = 1e30f;
+
+class StereoTracer {
+ public:
+  StereoTracer(const Device& device, const TracerOptions& options);
+  ~StereoTracer();
+  StereoTracer(const StereoTracer&) = delete;
+  StereoTracer& operator=(const StereoTracer&) = delete;
+
+  // `frame` is the device address of a FrameConstants whose size and view count are the options'; its contents are read
+  // when the commands run. Leaves the images in VK_IMAGE_LAYOUT_GENERAL, visible to fragment shaders and copies.
+  void record(VkCommandBuffer commands, VkDeviceAddress frame) const;
+
+  const TracerOptions& options() const { return options_; }
+  // One layer a view.
+  const Image& radiance() const { return radiance_; }  // RGBA16F, linear, times radiance_scale; alpha 1
+  const Image& distance() const { return distance_; }  // R32F, metres along the ray; kMissDistance_m = miss
+  const Image& aov() const { return aov_; }  // RGBA32UI: class, probe (0xffffffff = none), look-ups, tries | attribute reads << 16
+
+ private:
+  const Device& device_;
+  TracerOptions options_;
+  Image radiance_, distance_, aov_;
+  VkDescriptorSetLayout set_layout_ = VK_NULL_HANDLE;
+  VkDescriptorPool pool_ = VK_NULL_HANDLE;
+  VkDescriptorSet set_ = VK_NULL_HANDLE;
+  VkPipelineLayout layout_ = VK_NULL_HANDLE;
+  VkPipeline pipeline_ = VK_NULL_HANDLE;
+};
+
+}  // namespace probewalk
