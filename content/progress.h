@@ -12,7 +12,7 @@ class Progress {
   virtual ~Progress() = default;
   // A stage begins: `total` units of work named `unit` ("texels", "probes").
   virtual void begin(std::string_view stage, std::uint64_t total, std::string_view unit) = 0;
-  // `done` units of the current stage are finished. Callable from any thread.
+  // `done` more units of the current stage are finished. Callable from any thread.
   virtual void advance(std::uint64_t done) = 0;
   // One line for people: an estimate, a choice made, a warning.
   virtual void note(std::string_view line) = 0;
