@@ -1,0 +1,211 @@
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+
+#include "content/error.h"
+#include "content/scene/space/parts.h"
+#include "content/scene/space/start_and_tour.h"
+#include "content/scene/space/walk_paths.h"
+
+namespace probewalk {
+namespace {
+
+constexpr double kPoseStep_m = 0.25;
+constexpr double kStationSpacing_m = 3.0;   // no place is farther than this from a station, walking
+constexpr std::size_t kMostStations = 24;   // besides the middles of rooms
+constexpr std::size_t kMostRoomStations = 64;
+
+struct Station {
+  std::int32_t local = 0;  // index into the part's places
+  WalkTree tree;
+};
+
+// Uphill in the distance to walls, not farther than a step or two: the middle of where one is.
+std::int32_t climb(const FloorGraph& graph, const WalkPaths& paths, std::int32_t place) {
+  constexpr double kFarthest_m = 1.25;
+  for (int step = 0; step < int(kFarthest_m / graph.cell_m); ++step) {
+    std::int32_t up = place;
+    for (const std::int32_t j : graph.places[place].link) {
+      if (j >= 0 && paths.local(j) >= 0 && graph.places[j].wall_m > graph.places[up].wall_m) up = j;
+    }
+    if (up == place) break;
+    place = up;
+  }
+  return place;
+}
+
+// Root first, then the widest place of every room, then the place farthest from all stations, until all are near.
+std::vector<Station> find_stations(const WalkGround& ground, const WalkPaths& paths, std::int32_t root, Progress& progress) {
+  std::vector<Station> stations;
+  std::vector<float> nearest_m(ground.places.size(), HUGE_VALF);
+  const auto add = [&](std::int32_t local) {
+    if (progress.cancelled()) throw Interrupted("interrupted while planning the tour");
+    stations.push_back({local, paths.from(local)});
+    const WalkTree& tree = stations.back().tree;
+    for (std::size_t i = 0; i < nearest_m.size(); ++i) nearest_m[i] = std::min(nearest_m[i], tree.length_m[i]);
+  };
+  add(root);
+
+  std::map<std::int32_t, std::int32_t> widest;  // by room
+  for (const std::int32_t i : ground.places) {
+    const auto [entry, fresh] = widest.try_emplace(ground.room[i], i);
+    if (!fresh && ground.graph.places[i].wall_m > ground.graph.places[entry->second].wall_m) entry->second = i;
+  }
+  for (const auto& [room, place] : widest) {
+    if (stations.size() > kMostRoomStations) break;
+    if (nearest_m[paths.local(place)] > float(kPoseStep_m)) add(paths.local(place));
+  }
+
+  for (std::size_t extra = 0; extra < kMostStations; ++extra) {
+    std::int32_t farthest = -1;
+    for (std::size_t i = 0; i < nearest_m.size(); ++i) {
+      const bool fits = ground.graph.places[ground.places[i]].wall_m >= float(kBodyRadius_m) + 0.1f;
+      if (!fits || nearest_m[i] == HUGE_VALF) continue;
+      if (farthest < 0 || nearest_m[i] > nearest_m[farthest]) farthest = std::int32_t(i);
+    }
+    if (farthest < 0 || nearest_m[farthest] < float(kStationSpacing_m)) break;
+    const std::int32_t middle = paths.local(climb(ground.graph, paths, ground.places[farthest]));
+    const bool new_ground = nearest_m[middle] >= 0.5f * float(kStationSpacing_m);
+    add(new_ground ? middle : farthest);
+  }
+  return stations;
+}
+
+// A point of the way, on a straight line between corners.
+struct WayPoint {
+  glm::dvec3 foot_m;
+  double headroom_m;
+  bool station;
+};
+
+// The way from station to station, nearest unvisited first, as places: corners only.
+std::vector<WayPoint> walk_stations(const WalkGround& ground, const std::vector<Station>& stations) {
+  const FloorGraph& graph = ground.graph;
+  std::vector<bool> visited(stations.size(), false);
+  visited[0] = true;
+  std::vector<WayPoint> way;
+  const auto add_point = [&](glm::dvec2 at, std::int32_t place, bool station) {
+    const StandingPlace& p = graph.places[place];
+    way.push_back({{at.x, p.floor_m, at.y}, p.ceiling_m - p.floor_m, station});
+  };
+  const auto middle = [&](std::int32_t place) {
+    const glm::dvec3 foot = graph.foot_m(place);
+    return glm::dvec2(foot.x, foot.z);
+  };
+  add_point(middle(ground.places[stations[0].local]), ground.places[stations[0].local], true);
+  for (std::size_t at = 0;;) {
+    std::size_t next = at;
+    for (std::size_t s = 0; s < stations.size(); ++s) {
+      const float cost = stations[at].tree.cost[stations[s].local];
+      if (visited[s] || cost == HUGE_VALF) continue;
+      if (next == at || cost < stations[at].tree.cost[stations[next].local]) next = s;
+    }
+    if (next == at) return way;
+    visited[next] = true;
+    std::vector<std::int32_t> places;
+    for (std::int32_t i = stations[next].local; i >= 0; i = stations[at].tree.previous[i]) places.push_back(ground.places[i]);
+    std::reverse(places.begin(), places.end());
+    const std::vector<std::int32_t> corners = straightened(graph, places);
+    for (std::size_t c = 1; c < corners.size(); ++c) {
+      // Straight in plan, following the floor: one point for every column crossed.
+      const glm::dvec2 a = middle(corners[c - 1]);
+      const glm::dvec2 b = middle(corners[c]);
+      std::vector<std::int32_t> crossed = straight_walk(graph, corners[c - 1], corners[c], 0.0f);
+      if (crossed.empty()) crossed = {corners[c - 1], corners[c]};  // diagonal neighbours
+      for (std::size_t k = 1; k < crossed.size(); ++k) {
+        const glm::dvec2 p = a + (b - a) * (double(k) / double(crossed.size() - 1));
+        add_point(p, crossed[k], c + 1 == corners.size() && k + 1 == crossed.size());
+      }
+    }
+    at = next;
+  }
+}
+
+struct Sample {
+  glm::dvec3 foot_m{0.0};
+  double headroom_m = 0.0;
+};
+
+std::vector<double> distances_along(const std::vector<WayPoint>& way) {
+  std::vector<double> along(way.size(), 0.0);
+  for (std::size_t i = 1; i < way.size(); ++i) {
+    const glm::dvec3 d = way[i].foot_m - way[i - 1].foot_m;
+    along[i] = along[i - 1] + std::hypot(d.x, d.z);
+  }
+  return along;
+}
+
+// Mean of values within `radius` samples, tapering off: removes steps from floors and jerks from turning.
+std::vector<double> smoothed(const std::vector<double>& values, double sigma) {
+  const int radius = int(std::ceil(3.0 * sigma));
+  std::vector<double> out(values.size());
+  for (int i = 0; i < int(values.size()); ++i) {
+    double sum = 0.0, weight = 0.0;
+    for (int k = -radius; k <= radius; ++k) {
+      const double w = std::exp(-0.5 * k * k / (sigma * sigma));
+      sum += w * values[std::clamp(i + k, 0, int(values.size()) - 1)];
+      weight += w;
+    }
+    out[i] = sum / weight;
+  }
+  return out;
+}
+
+// Turns to one side and the other within two metres of a station, nothing beyond.
+double glance_rad(double from_station_m) {
+  constexpr double kReach_m = 2.0;
+  constexpr double kAngle_rad = 0.6;
+  if (std::abs(from_station_m) >= kReach_m) return 0.0;
+  const double x = from_station_m / kReach_m;
+  const double window = 0.5 + 0.5 * std::cos(std::numbers::pi * x);
+  return kAngle_rad * window * std::sin(std::numbers::pi * x);
+}
+
+}  // namespace
+
+std::vector<Pose> find_tour(const WalkGround& ground, const Pose& start, Progress& progress) {
+  const WalkPaths paths(ground.graph, ground.places);
+  const std::int32_t root = paths.local(nearest_place(ground.graph, ground.places, start.position_m));
+  const std::vector<WayPoint> way = walk_stations(ground, find_stations(ground, paths, root, progress));
+  const std::vector<double> along_m = distances_along(way);
+  const int count = int(std::round(along_m.back() / kPoseStep_m)) + 1;
+  if (count < 8) return look_around(start);
+
+  std::vector<Sample> samples(count);
+  std::vector<double> floor_m(count), yaw_rad(count);
+  std::size_t segment = 0;
+  for (int i = 0; i < count; ++i) {
+    const double s = std::min(along_m.back(), along_m.back() * i / (count - 1));
+    while (segment + 2 < way.size() && along_m[segment + 1] <= s) ++segment;
+    const WayPoint& a = way[segment];
+    const WayPoint& b = way[segment + 1];
+    const double f = std::clamp((s - along_m[segment]) / std::max(1e-9, along_m[segment + 1] - along_m[segment]), 0.0, 1.0);
+    const WayPoint& nearer = f < 0.5 ? a : b;
+    samples[i] = {glm::mix(a.foot_m, b.foot_m, f), std::min(a.headroom_m, b.headroom_m)};
+    samples[i].foot_m.y = nearer.foot_m.y;
+    floor_m[i] = nearer.foot_m.y;
+    const double yaw = yaw_of(b.foot_m - a.foot_m);
+    const double before = i > 0 ? yaw_rad[i - 1] : yaw;
+    yaw_rad[i] = before + std::remainder(yaw - before, 2.0 * std::numbers::pi);
+  }
+
+  const std::vector<double> level_m = smoothed(floor_m, 1.2);
+  std::vector<double> look_rad = smoothed(yaw_rad, 3.0);
+  for (std::size_t w = 0; w < way.size(); ++w) {
+    if (!way[w].station) continue;
+    for (int i = 0; i < count; ++i) look_rad[i] += glance_rad(along_m.back() * i / (count - 1) - along_m[w]);
+  }
+  std::vector<Pose> tour(count);
+  for (int i = 0; i < count; ++i) {
+    const Sample& at = samples[i];
+    // Smoothed over steps, but with the head where the column is known to be free.
+    const double top = at.foot_m.y + at.headroom_m - 0.1;
+    const double eye = std::clamp(level_m[i] + kEyeHeight_m, at.foot_m.y + 1.2, std::min(top, at.foot_m.y + 2.0));
+    tour[i].position_m = {at.foot_m.x, eye, at.foot_m.z};
+    tour[i].yaw_rad = std::remainder(look_rad[i], 2.0 * std::numbers::pi);
+  }
+  return tour;
+}
+
+}  // namespace probewalk
