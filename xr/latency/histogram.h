@@ -43,7 +43,7 @@ class Histogram {
   std::vector<Bucket> buckets() const;
 
  private:
-  // Index = bucket of |value|; grown on demand, at most 3 712 entries.
+  // Index = bucket of |value|; grown on demand, at most 3 776 entries.
   std::vector<std::uint64_t> positive_, negative_;
   std::uint64_t count_ = 0;
   std::int64_t min_ = 0, max_ = 0;
