@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "content/error.h"
+#include "content/pack/pack_format.h"
 #include "content/pack/pack_io.h"
 #include "content/probe/probe_set.h"
 #include "content/probe/tracer_f32.h"
