@@ -1,15 +1,28 @@
-// The pack format, version 1: this header is its normative text.
+// The pack format, version 1: this header is its normative text. Everything is little endian.
 //
-// A pack is a folder NAME.probes/ with one manifest `pack.json` and immutable chunks `chunks/<32 lower-case hex digits>`,
-// the name being the XXH3-128 of the file's bytes. The manifest is written last, by rename; its member "manifest_hash"
-// is the XXH3-128 (hex) of the manifest's canonical text (keys sorted, no white space) without that member.
+// THE FOLDER. A pack is a folder NAME.probes/ with one manifest `pack.json` and immutable chunks
+// `chunks/<32 lower-case hex digits>`. A chunk's name is the XXH3-128 (seed 0) of the file's bytes, most significant digit
+// first, as `xxhsum -H2` prints it. The manifest is written last and by rename; manifest.h and manifest_json.cpp say
+// what it holds. Its member "manifest_hash" is the XXH3-128 of the whole file with the 32 digits of that member's value
+// replaced by 32 zeros.
 //
-// A chunk is one room at one level. Little endian:
+// A CHUNK is one room at one level:
 //   char magic[8] = "PWCHUNK1"; u32 version = 1; u32 probe_count; u32 geometry_n; u32 radiance_r;
 //   u32 section_count; u32 reserved = 0; f64 room_origin_m[3];
-//   section_count times { u32 kind; u32 codec; u64 raw_bytes; u64 stored_bytes; }; then the sections' bytes in order.
-// Each section covers all probes of the chunk in order and is compressed by itself. Kinds, codecs and the transform
-// before compression are the enums below. raw_bytes is implied by the counts and checked before anything is allocated.
+//   section_count times { u32 kind; u32 codec; u64 raw_bytes; u64 stored_bytes; }, kinds strictly ascending;
+//   then the sections' stored bytes in the same order. Nothing lies between or behind them.
+// Every kind below is present once, only kNormals may be absent. A section is the concatenation, probe after probe, of
+// that probe's array after the kind's transform; raw_bytes is its size, implied by the counts; the codec then
+// compresses the section as a whole (kZstd: one or more zstd frames, window at most 2^kZstdWindowLog bytes).
+//
+// TRANSFORMS, each on one probe's array of `bits`-bit unsigned words (floats by their bit patterns):
+//   prediction  The array is a grid of `side` columns. With a = left, b = up and c = upper left neighbour, a word is
+//               predicted as a + b - c, in the first row as a, in the first column as b, the first word as 0. What is
+//               stored is the residual (word - prediction) mod 2^bits as a zig-zag code: with s the residual read as a
+//               two's complement number, 2 s for s >= 0 and -2 s - 1 for s < 0. Planes of the world are affine in w over
+//               the map and a float's bits are affine in its value within an octave, so that little but rounding is left.
+//   byte planes The words' most significant bytes, all of them in order, then the next bytes, down to the least.
+// Both where both are named: prediction first.
 #pragma once
 
 #include <array>
@@ -20,15 +33,18 @@ namespace probewalk {
 inline constexpr std::uint32_t kPackFormatVersion = 1;
 inline constexpr std::array<char, 8> kChunkMagic{'P', 'W', 'C', 'H', 'U', 'N', 'K', '1'};
 
+// Content of a section, per probe, with n = geometry_n and r = radiance_r; both are powers of two. Layouts as in
+// content/probe/probe_map.h.
 enum class ChunkSection : std::uint32_t {
-  kPositions = 1,  // probe_count * 3 f32: position relative to room_origin_m
-  kSamples = 2,    // probe_count * (n+1)^2 f32: w. Transform: plane predictor on the bit patterns, byte planes
-  kEdges = 3,      // probe_count * (2 n (n+1) + n^2) u8: horizontal, vertical, diagonal
-  kNormals = 4,    // probe_count * (n+1)^2 u16; absent when no probe of the chunk has a cut
-  kRadiance = 5,   // probe_count * mip chain of r^2 u32 E5B9G9R9, byte planes
-  kTexelW = 6,     // probe_count * r^2 u16, delta along rows, byte planes
+  kPositions = 1,  // 3 f32: position minus room_origin_m. No transform
+  kSamples = 2,    // (n+1)^2 f32: w. Prediction with side n+1, byte planes
+  kEdges = 3,      // 2 n (n+1) + n^2 u8: horizontal, vertical, diagonal; 0..64. No transform
+  kNormals = 4,    // (n+1)^2 u16. Byte planes. Absent when the chunk has no cut; then all are 0
+  kRadiance = 5,   // mips of r^2, (r/2)^2 ... 1 u32 E5B9G9R9. Byte planes
+  kTexelW = 6,     // r^2 u16. Prediction with side r, byte planes
 };
-// Codec of a section. A reader refuses codes it does not know, by number.
+
+// A reader refuses codes it does not know, by number.
 enum class ChunkCodec : std::uint32_t { kRaw = 0, kZstd = 1 };
 
 // What a reader accepts. Checked before anything is allocated.
@@ -41,8 +57,20 @@ struct PackLimits {
   static constexpr std::uint32_t kLevels = 16;
   static constexpr std::uint32_t kSections = 32;
   static constexpr std::uint64_t kChunkRawBytes = 8ull << 30;
+  static constexpr std::uint64_t kDeviceBytesPerLevel = 64ull << 30;
   static constexpr int kZstdWindowLog = 23;  // 8 MiB
   static constexpr double kCoordinate_m = 1e7;
+  // Samples other than the sky's 0: from a micrometre to beyond any coordinate, far from denormals.
+  static constexpr float kLeastW_per_m = 1e-9f;
+  static constexpr float kGreatestW_per_m = 1e6f;
+  static constexpr std::uint64_t kGridVertices = 1ull << 24;
+  static constexpr std::uint32_t kFloorNodes = 1u << 22;
+  static constexpr std::int32_t kFloorColumns = 1 << 16;  // a side
+  static constexpr std::uint32_t kPortals = 1u << 18;
+  static constexpr std::uint32_t kPortalCorners = 64;
+  static constexpr std::uint32_t kTourPoses = 1u << 18;
+  static constexpr std::uint32_t kWarnings = 4096;
+  static constexpr std::uint32_t kTextBytes = 1u << 20;  // of one string
 };
 
 }  // namespace probewalk

@@ -27,6 +27,10 @@ RoomLevel decode_chunk(std::span<const std::byte> bytes, const std::string& sour
 // XXH3-128 as 32 lower-case hex digits.
 std::string content_hash(std::span<const std::byte> bytes);
 
+// Bytes of chunks/<hash> in the folder `pack`, exactly bytes_disk of them, hash checked. Throws BadInput. Thread-safe.
+std::vector<std::byte> read_chunk_file(const std::filesystem::path& pack, const std::string& hash,
+                                       std::uint64_t bytes_disk);
+
 class PackWriter {
  public:
   // Creates the folder (and `chunks/`) if needed.
