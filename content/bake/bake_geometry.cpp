@@ -22,6 +22,7 @@ constexpr double kFarPlane = 0.02;        // ... and the normals agree by kSmoot
 constexpr double kSmoothCosine = 0.7;
 constexpr double kFoldTolerance = 0.005;  // a ray at a predicted fold must meet it this exactly
 constexpr double kJumpKept = 0.15;        // a jump that six halvings leave above this share is a true jump
+constexpr double kJumpLeast = 1e-4;       // ... unless it is none
 constexpr int kHalvings = 6;
 
 // What a ray through a point of the octahedron meets.
@@ -144,26 +145,29 @@ class GeometryBaker {
         }
       }
     }
-    return bisect(wa, qa, wb, qb, cast);
+    return bisect({map_.w[a], triangle_[a]}, qa, {map_.w[b], triangle_[b]}, qb, cast);
   }
 
-  std::uint8_t bisect(double w_low, glm::dvec3 qa, double w_high, glm::dvec3 qb, std::uint64_t& cast) const {
-    const double jump = std::abs(w_low - w_high), scale = std::max(w_low, w_high);
+  std::uint8_t bisect(Sample at_low, glm::dvec3 qa, Sample at_high, glm::dvec3 qb, std::uint64_t& cast) const {
+    const double jump = std::abs(at_low.w - at_high.w), scale = std::max(at_low.w, at_high.w);
     int low = 0, high = kCutSteps;
     for (int k = 0; k < kHalvings; ++k) {
       const int middle = (low + high) / 2;
-      const double w = sample(glm::mix(qa, qb, double(middle) / kCutSteps)).w;
+      const Sample at_middle = sample(glm::mix(qa, qb, double(middle) / kCutSteps));
       ++cast;
-      if (std::abs(w - w_low) > std::abs(w - w_high)) {
+      if (std::abs(at_middle.w - at_low.w) > std::abs(at_middle.w - at_high.w)) {
         high = middle;
-        w_high = w;
+        at_high = at_middle;
       } else {
         low = middle;
-        w_low = w;
+        at_low = at_middle;
       }
     }
-    if (w_low > 0.0 && w_high > 0.0 && std::abs(w_low - w_high) < std::max(kJumpKept * jump, 1e-4 * scale)) {
-      return kConnected;
+    if (at_low.w > 0.0f && at_high.w > 0.0f) {
+      const double kept = std::abs(at_low.w - at_high.w);
+      if (kept < std::max(kJumpKept * jump, kJumpLeast * scale)) return kConnected;
+      // Ends that hardly differ (a corner of three walls between them) leave the surface's own slope.
+      if (jump < kFarPlane * scale && at_low.triangle == at_high.triangle) return kConnected;
     }
     return static_cast<std::uint8_t>(low + 1);  // (value - 0.5) / 64 is the middle of the last interval
   }

@@ -25,6 +25,7 @@ constexpr int kHiddenRays = 32;
 constexpr float kHiddenShare = 0.9f;
 constexpr float kLookHeight_m = 0.02f;      // thinner things (a rug's edge) do not part a surface
 constexpr float kLookTilt = 0.15f;          // tangent of the angle at which the view along the surface rises
+constexpr float kLookReach = 3.0f;          // in reaches: a wall must be known in the directions beside the nearest, too
 constexpr float kBlockedWeight = 1e-3f;     // of a point that does not see the place, or is hidden
 constexpr float kVanishing = 1e-12f;
 
@@ -131,8 +132,9 @@ void CachePoints::look_around(const RayScene& rays) {
     for (int s = 0; s < kSectors; ++s) {
       const glm::vec2 along = sector_direction(s);
       const glm::vec3 direction = tangent * along.x + bitangent * along.y + n * kLookTilt;
-      const SurfaceHit hit = rays.closest(point.position_m + n * kLookHeight_m, direction, 0.0f, reach_m_);
-      point.free[s] = hit.hit ? static_cast<std::uint8_t>(hit.t / reach_m_ * kFreeSteps) : kOpen;
+      const SurfaceHit hit = rays.closest(point.position_m + n * kLookHeight_m, direction, 0.0f, kLookReach * reach_m_);
+      const float nearness = kNearSteps * reach_m_ / std::max(hit.t, 1e-4f);
+      point.nearness[s] = hit.hit ? static_cast<std::uint8_t>(std::min(nearness, 255.0f)) : 0;
     }
   });
   rays_cast_ += points_.size() * (kHiddenRays + kSectors);
@@ -192,9 +194,10 @@ float CachePoints::open_fraction(const Point& point, glm::vec3 offset, float tan
   const float sector = sector_of(glm::dot(offset, tangent), glm::dot(offset, bitangent));
   const int low = static_cast<int>(sector);
   const float part = sector - static_cast<float>(low);
-  const std::uint8_t a = point.free[low % kSectors], b = point.free[(low + 1) % kSectors];
-  if (a == kOpen && b == kOpen) return 1.0f;
-  const float free_m = (static_cast<float>(a) * (1.0f - part) + static_cast<float>(b) * part) * (reach_m_ / kFreeSteps);
+  const std::uint8_t a = point.nearness[low % kSectors], b = point.nearness[(low + 1) % kSectors];
+  if (a == 0 && b == 0) return 1.0f;
+  const float nearness = static_cast<float>(a) * (1.0f - part) + static_cast<float>(b) * part;
+  const float free_m = kNearSteps * reach_m_ / nearness;
   return std::clamp((free_m - tangential_m) / (0.15f * reach_m_), 0.0f, 1.0f);
 }
 

@@ -20,8 +20,9 @@ class CachePoints {
     glm::vec3 position_m{0.0f};
     glm::vec3 normal{0.0f};  // unit; shading normal of its side
     glm::vec3 geometric_normal{0.0f};
-    // Free way along the surface, by direction, in units of reach / kFreeSteps; kOpen = beyond reach.
-    std::array<std::uint8_t, kSectors> free{};
+    // How near the surface around is closed, by direction: kNearSteps * reach / free way; 0 = open. The reciprocal is
+    // what interpolates well: along a straight wall it is affine in the direction.
+    std::array<std::uint8_t, kSectors> nearness{};
     bool hidden = false;  // nearly all of its hemisphere is closed within centimetres: nobody sees it
   };
 
@@ -39,8 +40,7 @@ class CachePoints {
                         bool with_hidden = true) const;
 
  private:
-  static constexpr std::uint8_t kOpen = 255;
-  static constexpr float kFreeSteps = 200.0f;
+  static constexpr float kNearSteps = 12.0f;
   struct Bucket {
     std::uint64_t key = ~0ull;
     std::uint32_t first = 0, count = 0;
