@@ -35,6 +35,13 @@ struct ViewPose {
   float fov_left_rad = -0.7f, fov_right_rad = 0.7f, fov_up_rad = 0.7f, fov_down_rad = -0.7f;
 };
 
+// How far the pose that a frame was drawn with lay from the pose that the display knew once its time had come.
+struct PoseError {
+  std::int64_t predicted_display_ns = 0;  // of the frame
+  double position_mm = 0.0;
+  double angle_deg = 0.0;
+};
+
 class FrameSource {
  public:
   virtual ~FrameSource() = default;
@@ -54,9 +61,19 @@ class FrameSource {
   virtual VkExtent2D view_extent() const = 0;
   virtual std::uint32_t view_count() const = 0;
   virtual VkFormat color_format() const = 0;
+  // An image of 0 = nothing to draw into (the display is gone; the next poll says so).
   virtual FrameTarget acquire() = 0;
   // Ends the frame with the views that were rendered (empty = nothing was).
   virtual void end(const FrameTiming& timing, const std::vector<ViewPose>& rendered_views) = 0;
+
+  // How dark locomotion wants the picture: 0 = as it is, 1 = black (a teleport's blink, a head inside a wall).
+  virtual float fade() const { return 0.0f; }
+  // Of frames whose time has come since the last call. Always empty where a display has no later answer.
+  virtual std::vector<PoseError> take_pose_errors() { return {}; }
+  // Whether the user asked for a picture of the next frame.
+  virtual bool take_screenshot_request() { return false; }
+  // Leaves in order, before destruction.
+  virtual void finish() {}
 };
 
 }  // namespace probewalk

@@ -1,0 +1,28 @@
+#include "xr/offscreen_source.h"
+
+#include <fmt/format.h>
+
+#include "xr/latency/clock.h"
+
+namespace probewalk {
+
+OffscreenSource::OffscreenSource(const Device& device, const Pose& head, const OffscreenOptions& options)
+    : head_(head), options_(options), images_(device, options.eye_size, 2), start_ns_(now_ns()) {}
+
+std::string OffscreenSource::description() const {
+  return fmt::format("no display, {}x{} an eye, a fixed clock of {:.3g} Hz", options_.eye_size.width,
+                     options_.eye_size.height, 1e9 / static_cast<double>(options_.period_ns));
+}
+
+FrameTiming OffscreenSource::wait() {
+  FrameTiming timing;
+  timing.period_ns = options_.period_ns;
+  timing.predicted_display_ns = start_ns_ + frame_++ * options_.period_ns;
+  return timing;
+}
+
+std::vector<ViewPose> OffscreenSource::locate(const FrameTiming&, ViewPose* head) {
+  return eyes_of(head_, options_.eyes, options_.eye_size, head);
+}
+
+}  // namespace probewalk

@@ -1,0 +1,404 @@
+#include "xr/openxr_source.h"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <thread>
+
+#include "content/error.h"
+#include "xr/latency/clock.h"
+#include "xr/path.h"
+
+namespace probewalk {
+namespace {
+
+constexpr XrViewConfigurationType kStereo = XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO;
+// What the specification guarantees of the history of poses.
+constexpr std::int64_t kPoseHistory_ns = 50'000'000;
+constexpr XrDuration kImageTimeout_ns = 2'000'000'000;
+constexpr auto kExitPatience = std::chrono::milliseconds(500);
+
+glm::dvec3 vec_of(const XrVector3f& v) { return {v.x, v.y, v.z}; }
+glm::dquat quat_of(const XrQuaternionf& q) { return glm::normalize(glm::dquat(q.w, q.x, q.y, q.z)); }
+
+XrPosef identity_pose(float y_m = 0.0f) {
+  XrPosef pose{};
+  pose.orientation.w = 1.0f;
+  pose.position.y = y_m;
+  return pose;
+}
+
+template <typename Item, typename Call>
+std::vector<Item> enumerate(const char* name, Item prototype, const Call& call) {
+  std::uint32_t count = 0;
+  check_xr(call(0u, &count, static_cast<Item*>(nullptr)), name);
+  std::vector<Item> items(count, prototype);
+  check_xr(call(count, &count, items.data()), name);
+  items.resize(count);
+  return items;
+}
+
+}  // namespace
+
+OpenXrSource::OpenXrSource(const OpenXrInstance& instance, const Device& device, const FloorMap& floor,
+                           const Pose& start, const HeadsetOptions& options)
+    : instance_(instance), device_(device), floor_(floor), anchor_(start) {
+  create_session();
+  create_space(options.seated);
+  input_ = std::make_unique<OpenXrInput>(instance, session_.get());
+  create_swapchain(options.eye_size);
+}
+
+void OpenXrSource::create_session() {
+  XrGraphicsBindingVulkan2KHR binding{XR_TYPE_GRAPHICS_BINDING_VULKAN2_KHR};
+  binding.instance = device_.instance();
+  binding.physicalDevice = device_.physical();
+  binding.device = device_.handle();
+  binding.queueFamilyIndex = device_.queue_family();
+  binding.queueIndex = 0;
+  XrSessionCreateInfo info{XR_TYPE_SESSION_CREATE_INFO};
+  info.next = &binding;
+  info.systemId = instance_.system();
+  check_xr(xrCreateSession(instance_.handle(), &info, session_.out()), "xrCreateSession");
+}
+
+void OpenXrSource::create_space(bool seated) {
+  const auto offered =
+      enumerate<XrReferenceSpaceType>("xrEnumerateReferenceSpaces", {}, [&](auto capacity, auto* count, auto* items) {
+        return xrEnumerateReferenceSpaces(session_.get(), capacity, count, items);
+      });
+  const auto has = [&](XrReferenceSpaceType type) { return std::ranges::find(offered, type) != offered.end(); };
+  XrReferenceSpaceCreateInfo info{XR_TYPE_REFERENCE_SPACE_CREATE_INFO};
+  info.poseInReferenceSpace = identity_pose();
+  if (!seated && instance_.has(XR_EXT_LOCAL_FLOOR_EXTENSION_NAME) && has(XR_REFERENCE_SPACE_TYPE_LOCAL_FLOOR_EXT)) {
+    info.referenceSpaceType = XR_REFERENCE_SPACE_TYPE_LOCAL_FLOOR_EXT;
+    space_name_ = "LOCAL_FLOOR";
+  } else if (!seated && has(XR_REFERENCE_SPACE_TYPE_STAGE)) {
+    info.referenceSpaceType = XR_REFERENCE_SPACE_TYPE_STAGE;
+    space_name_ = "STAGE";
+  } else {
+    // Every runtime has LOCAL; its origin is the head's resting place.
+    info.referenceSpaceType = XR_REFERENCE_SPACE_TYPE_LOCAL;
+    space_floor_m_ = -kEyeHeight_m;
+    space_name_ = fmt::format("LOCAL, eyes at {} m", kEyeHeight_m);
+  }
+  check_xr(xrCreateReferenceSpace(session_.get(), &info, space_.out()), "xrCreateReferenceSpace");
+}
+
+void OpenXrSource::create_swapchain(VkExtent2D wanted) {
+  const auto configurations = enumerate<XrViewConfigurationView>(
+      "xrEnumerateViewConfigurationViews", {XR_TYPE_VIEW_CONFIGURATION_VIEW}, [&](auto capacity, auto* count, auto* items) {
+        return xrEnumerateViewConfigurationViews(instance_.handle(), instance_.system(), kStereo, capacity, count, items);
+      });
+  // One array image for all views: as large as the largest of them.
+  VkExtent2D most{~0u, ~0u};
+  for (const auto& view : configurations) {
+    extent_.width = std::max(extent_.width, view.recommendedImageRectWidth);
+    extent_.height = std::max(extent_.height, view.recommendedImageRectHeight);
+    most.width = std::min(most.width, view.maxImageRectWidth);
+    most.height = std::min(most.height, view.maxImageRectHeight);
+  }
+  if (wanted.width > 0) extent_ = wanted;
+  if (extent_.width > most.width || extent_.height > most.height) {
+    throw BadUsage(fmt::format("--eye-size {}x{}: this headset takes at most {}x{}", extent_.width, extent_.height,
+                               most.width, most.height));
+  }
+  views_.assign(configurations.size(), {XR_TYPE_VIEW, nullptr, identity_pose(), {}});
+
+  const auto modes = enumerate<XrEnvironmentBlendMode>(
+      "xrEnumerateEnvironmentBlendModes", {}, [&](auto capacity, auto* count, auto* items) {
+        return xrEnumerateEnvironmentBlendModes(instance_.handle(), instance_.system(), kStereo, capacity, count, items);
+      });
+  if (std::ranges::find(modes, XR_ENVIRONMENT_BLEND_MODE_OPAQUE) == modes.end()) blend_mode_ = modes.at(0);
+
+  const auto formats =
+      enumerate<std::int64_t>("xrEnumerateSwapchainFormats", 0, [&](auto capacity, auto* count, auto* items) {
+        return xrEnumerateSwapchainFormats(session_.get(), capacity, count, items);
+      });
+  for (const VkFormat format : {VK_FORMAT_R8G8B8A8_SRGB, VK_FORMAT_B8G8R8A8_SRGB}) {
+    if (format_ == VK_FORMAT_UNDEFINED && std::ranges::find(formats, format) != formats.end()) format_ = format;
+  }
+  if (format_ == VK_FORMAT_UNDEFINED) throw NoDevice("the OpenXR runtime offers no 8-bit sRGB swapchain format");
+
+  XrSwapchainCreateInfo info{XR_TYPE_SWAPCHAIN_CREATE_INFO};
+  info.usageFlags = XR_SWAPCHAIN_USAGE_COLOR_ATTACHMENT_BIT | XR_SWAPCHAIN_USAGE_TRANSFER_SRC_BIT;
+  info.format = format_;
+  info.sampleCount = 1;
+  info.width = extent_.width;
+  info.height = extent_.height;
+  info.faceCount = 1;
+  info.arraySize = view_count();
+  info.mipCount = 1;
+  check_xr(xrCreateSwapchain(session_.get(), &info, swapchain_.out()), "xrCreateSwapchain");
+  const auto images = enumerate<XrSwapchainImageVulkan2KHR>(
+      "xrEnumerateSwapchainImages", {XR_TYPE_SWAPCHAIN_IMAGE_VULKAN2_KHR}, [&](auto capacity, auto* count, auto* items) {
+        return xrEnumerateSwapchainImages(swapchain_.get(), capacity, count,
+                                          reinterpret_cast<XrSwapchainImageBaseHeader*>(items));
+      });
+  for (const auto& image : images) images_.push_back(image.image);
+}
+
+std::string OpenXrSource::description() const {
+  return fmt::format("{}, {}x{} an eye, space {}", instance_.description(), extent_.width, extent_.height, space_name_);
+}
+
+bool OpenXrSource::alive(XrResult result, const char* call) {
+  if (means_lost(result)) {
+    if (state_.source_state() != SourceState::kLost) {
+      spdlog::warn("the OpenXR runtime went away ({}: {})", call, xr_result_name(result));
+    }
+    state_.on_lost();
+    return false;
+  }
+  check_xr(result, call);
+  return true;
+}
+
+void OpenXrSource::on_session_change(XrSessionState next) {
+  spdlog::info("OpenXR session {}", session_state_name(next));
+  switch (state_.on_change(next)) {
+    case SessionDuty::kBegin: {
+      XrSessionBeginInfo info{XR_TYPE_SESSION_BEGIN_INFO};
+      info.primaryViewConfigurationType = kStereo;
+      alive(xrBeginSession(session_.get(), &info), "xrBeginSession");
+      break;
+    }
+    case SessionDuty::kEnd:
+      alive(xrEndSession(session_.get()), "xrEndSession");
+      break;
+    case SessionDuty::kNone:
+      break;
+  }
+}
+
+SourceState OpenXrSource::poll() {
+  while (state_.source_state() != SourceState::kLost) {
+    XrEventDataBuffer event{XR_TYPE_EVENT_DATA_BUFFER};
+    const XrResult result = xrPollEvent(instance_.handle(), &event);
+    if (!alive(result, "xrPollEvent") || result == XR_EVENT_UNAVAILABLE) break;
+    switch (event.type) {
+      case XR_TYPE_EVENT_DATA_SESSION_STATE_CHANGED:
+        on_session_change(reinterpret_cast<const XrEventDataSessionStateChanged&>(event).state);
+        break;
+      case XR_TYPE_EVENT_DATA_INSTANCE_LOSS_PENDING:
+        spdlog::warn("the OpenXR runtime is going away");
+        state_.on_lost();
+        break;
+      case XR_TYPE_EVENT_DATA_REFERENCE_SPACE_CHANGE_PENDING:
+        // The origin will jump: the rig is placed anew then, so that the view does not.
+        space_changes_at_ = reinterpret_cast<const XrEventDataReferenceSpaceChangePending&>(event).changeTime;
+        break;
+      default:
+        break;
+    }
+  }
+  return state_.source_state();
+}
+
+FrameTiming OpenXrSource::wait() {
+  FrameTiming timing;
+  timing.should_render = false;
+  XrFrameWaitInfo info{XR_TYPE_FRAME_WAIT_INFO};
+  XrFrameState frame{XR_TYPE_FRAME_STATE};
+  if (!alive(xrWaitFrame(session_.get(), &info, &frame), "xrWaitFrame")) return timing;
+  timing.predicted_display_ns = instance_.monotonic_ns(frame.predictedDisplayTime);
+  timing.period_ns = frame.predictedDisplayPeriod;
+  timing.should_render = frame.shouldRender == XR_TRUE;
+  const double dt_s = display_time_ == 0 ? 0.0 : static_cast<double>(frame.predictedDisplayTime - display_time_) * 1e-9;
+  display_time_ = frame.predictedDisplayTime;
+  move(std::clamp(dt_s, 0.0, 0.1), frame.predictedDisplayTime);
+  return timing;
+}
+
+void OpenXrSource::begin(FrameTiming& timing) {
+  if (state_.source_state() == SourceState::kLost) return;
+  XrFrameBeginInfo info{XR_TYPE_FRAME_BEGIN_INFO};
+  const auto queue = device_.lock_queue();
+  const XrResult result = xrBeginFrame(session_.get(), &info);
+  if (alive(result, "xrBeginFrame")) timing.discarded = result == XR_FRAME_DISCARDED;
+}
+
+bool OpenXrSource::locate_views(XrTime time, std::vector<XrView>& views) {
+  if (state_.source_state() == SourceState::kLost) return false;
+  XrViewLocateInfo info{XR_TYPE_VIEW_LOCATE_INFO};
+  info.viewConfigurationType = kStereo;
+  info.displayTime = time;
+  info.space = space_.get();
+  XrViewState state{XR_TYPE_VIEW_STATE};
+  auto count = static_cast<std::uint32_t>(views.size());
+  if (!alive(xrLocateViews(session_.get(), &info, &state, count, &count, views.data()), "xrLocateViews")) return false;
+  // Valid, not tracked: a headset that sees nothing for a moment still has the best pose there is.
+  constexpr XrViewStateFlags kValid = XR_VIEW_STATE_POSITION_VALID_BIT | XR_VIEW_STATE_ORIENTATION_VALID_BIT;
+  return (state.viewStateFlags & kValid) == kValid;
+}
+
+OpenXrSource::Head OpenXrSource::head_of(const std::vector<XrView>& views) {
+  Head head;
+  head.orientation = quat_of(views.front().pose.orientation);
+  for (const XrView& view : views) head.position_m += vec_of(view.pose.position) / static_cast<double>(views.size());
+  if (views.size() >= 2) head.orientation = glm::slerp(head.orientation, quat_of(views[1].pose.orientation), 0.5);
+  return head;
+}
+
+void OpenXrSource::place_rig(const Head& head) {
+  const glm::dvec3 foot_m = anchor_.position_m - glm::dvec3(0, kEyeHeight_m, 0);
+  const double floor_y_m = floor_height_m(floor_, foot_m).value_or(foot_m.y);
+  rig_ = Rig::with_head_at({foot_m.x, floor_y_m - space_floor_m_, foot_m.z}, anchor_.yaw_rad, head.position_m,
+                           pose_of({}, head.orientation).yaw_rad);
+  rig_placed_ = true;
+}
+
+std::vector<ViewPose> OpenXrSource::locate(const FrameTiming& timing, ViewPose* head) {
+  const XrTime time = display_time_ != 0 ? display_time_ : instance_.xr_time(timing.predicted_display_ns);
+  views_valid_ = locate_views(time, views_);
+  if (!views_valid_) return {};
+  const Head rig_head = head_of(views_);
+  if (!rig_placed_) place_rig(rig_head);
+  std::vector<ViewPose> views;
+  for (const XrView& view : views_) {
+    ViewPose& pose = views.emplace_back();
+    pose.position_m = rig_.world_from_rig(vec_of(view.pose.position));
+    pose.orientation = rig_.world_from_rig(quat_of(view.pose.orientation));
+    pose.fov_left_rad = view.fov.angleLeft;
+    pose.fov_right_rad = view.fov.angleRight;
+    pose.fov_up_rad = view.fov.angleUp;
+    pose.fov_down_rad = view.fov.angleDown;
+  }
+  if (head != nullptr) {
+    *head = views.front();
+    head->position_m = rig_.world_from_rig(rig_head.position_m);
+    head->orientation = rig_.world_from_rig(rig_head.orientation);
+  }
+  return views;
+}
+
+// Teleports, recentring and fades: once a frame, before its views are located.
+void OpenXrSource::move(double dt_s, XrTime time) {
+  if (!views_valid_ || !rig_placed_) return;
+  const Head head = head_of(views_);
+  if (space_changes_at_ != 0 && time >= space_changes_at_) {
+    anchor_ = pose_of(rig_.world_from_rig(head.position_m), rig_.world_from_rig(head.orientation));
+    anchor_.position_m.y = rig_.position_m.y + space_floor_m_ + kEyeHeight_m;
+    rig_placed_ = false;
+    space_changes_at_ = 0;
+    return;
+  }
+  if (state_.focused()) {
+    XrResult result = XR_SUCCESS;
+    const OpenXrInput::Events events = input_->poll(session_.get(), space_.get(), time, result);
+    if (!alive(result, "xrSyncActions")) return;
+    if (events.recentre) blink_.start({rig_.position_m.x, rig_.position_m.y + space_floor_m_, rig_.position_m.z});
+    if (events.teleport) {
+      const glm::dvec3 tip = rig_.world_from_rig(events.teleport->direction) - rig_.position_m;
+      const auto target = floor_under_ray(floor_, rig_.world_from_rig(events.teleport->origin_m), tip);
+      if (target) blink_.start(*target);
+    }
+  }
+  if (const auto target_m = blink_.advance(dt_s)) {
+    rig_ = rig_.teleported(*target_m - glm::dvec3(0, space_floor_m_, 0), head.position_m);
+  }
+  wall_fade_.advance(floor_.nodes.empty() || head_is_free(floor_, rig_.world_from_rig(head.position_m)), dt_s);
+}
+
+FrameTarget OpenXrSource::acquire() {
+  FrameTarget target;
+  if (state_.source_state() == SourceState::kLost) return target;
+  XrSwapchainImageAcquireInfo acquire{XR_TYPE_SWAPCHAIN_IMAGE_ACQUIRE_INFO};
+  std::uint32_t index = 0;
+  XrResult result = XR_SUCCESS;
+  {
+    const auto queue = device_.lock_queue();
+    result = xrAcquireSwapchainImage(swapchain_.get(), &acquire, &index);
+  }
+  if (!alive(result, "xrAcquireSwapchainImage")) return target;
+  XrSwapchainImageWaitInfo wait{XR_TYPE_SWAPCHAIN_IMAGE_WAIT_INFO};
+  wait.timeout = kImageTimeout_ns;
+  result = xrWaitSwapchainImage(swapchain_.get(), &wait);
+  if (!alive(result, "xrWaitSwapchainImage")) return target;
+  if (result == XR_TIMEOUT_EXPIRED) {
+    spdlog::warn("the OpenXR runtime has kept a swapchain image for {} s", kImageTimeout_ns / 1'000'000'000);
+    state_.on_lost();
+    return target;
+  }
+  image_held_ = true;
+  target.image = images_.at(index);
+  target.format = format_;
+  target.extent = extent_;
+  target.layers = view_count();
+  target.initial_layout = VK_IMAGE_LAYOUT_UNDEFINED;
+  target.final_layout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
+  return target;
+}
+
+void OpenXrSource::end(const FrameTiming& timing, const std::vector<ViewPose>& rendered_views) {
+  if (state_.source_state() == SourceState::kLost) return;
+  const auto queue = device_.lock_queue();
+  if (image_held_) {
+    XrSwapchainImageReleaseInfo release{XR_TYPE_SWAPCHAIN_IMAGE_RELEASE_INFO};
+    if (!alive(xrReleaseSwapchainImage(swapchain_.get(), &release), "xrReleaseSwapchainImage")) return;
+  }
+  const bool shown = image_held_ && views_valid_ && rendered_views.size() == views_.size();
+  image_held_ = false;
+
+  std::vector<XrCompositionLayerProjectionView> layer_views;
+  for (std::uint32_t i = 0; shown && i < view_count(); ++i) {
+    XrCompositionLayerProjectionView view{XR_TYPE_COMPOSITION_LAYER_PROJECTION_VIEW};
+    view.pose = views_[i].pose;
+    view.fov = {rendered_views[i].fov_left_rad, rendered_views[i].fov_right_rad, rendered_views[i].fov_up_rad,
+                rendered_views[i].fov_down_rad};
+    view.subImage.swapchain = swapchain_.get();
+    view.subImage.imageRect.extent = {static_cast<std::int32_t>(extent_.width), static_cast<std::int32_t>(extent_.height)};
+    view.subImage.imageArrayIndex = i;
+    layer_views.push_back(view);
+  }
+  XrCompositionLayerProjection projection{XR_TYPE_COMPOSITION_LAYER_PROJECTION};
+  projection.space = space_.get();
+  projection.viewCount = static_cast<std::uint32_t>(layer_views.size());
+  projection.views = layer_views.data();
+  const std::array layers{reinterpret_cast<const XrCompositionLayerBaseHeader*>(&projection)};
+  XrFrameEndInfo info{XR_TYPE_FRAME_END_INFO};
+  info.displayTime = display_time_;
+  info.environmentBlendMode = blend_mode_;
+  info.layerCount = shown ? 1 : 0;
+  info.layers = layers.data();
+  if (!alive(xrEndFrame(session_.get(), &info), "xrEndFrame")) return;
+  if (shown) {
+    const Head head = head_of(views_);
+    shown_.push_back({display_time_, timing.predicted_display_ns, head.position_m, head.orientation});
+  }
+}
+
+float OpenXrSource::fade() const { return std::max(blink_.darkness(), wall_fade_.darkness()); }
+
+std::vector<PoseError> OpenXrSource::take_pose_errors() {
+  std::vector<PoseError> errors;
+  const std::int64_t now = now_ns();
+  std::vector<XrView> views = views_;
+  while (!shown_.empty() && shown_.front().predicted_display_ns < now) {
+    const ShownPose pose = shown_.front();
+    shown_.pop_front();
+    if (now - pose.predicted_display_ns > kPoseHistory_ns || !locate_views(pose.time, views)) continue;
+    const Head head = head_of(views);
+    const double cosine = std::min(1.0, std::abs(glm::dot(head.orientation, pose.orientation)));
+    errors.push_back({pose.predicted_display_ns, glm::distance(head.position_m, pose.position_m) * 1e3,
+                      glm::degrees(2.0 * std::acos(cosine))});
+  }
+  return errors;
+}
+
+void OpenXrSource::finish() {
+  if (poll() != SourceState::kRunning) return;
+  if (!alive(xrRequestExitSession(session_.get()), "xrRequestExitSession")) return;
+  const auto until = std::chrono::steady_clock::now() + kExitPatience;
+  while (std::chrono::steady_clock::now() < until) {
+    const SourceState state = poll();
+    if (state == SourceState::kLost || state == SourceState::kFinished) return;
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+}
+
+}  // namespace probewalk

@@ -1,0 +1,103 @@
+// Frames to and from a headset: an OpenXR session with one stereo projection layer.
+#pragma once
+
+#include <deque>
+#include <memory>
+#include <vector>
+
+#include "content/scene/space.h"
+#include "xr/frame_source.h"
+#include "xr/locomotion.h"
+#include "xr/openxr_input.h"
+#include "xr/openxr_instance.h"
+#include "xr/session_state.h"
+
+namespace probewalk {
+
+struct HeadsetOptions {
+  VkExtent2D eye_size{0, 0};  // 0 = what the runtime recommends
+  bool seated = false;        // the head's resting place is at standing eye height, wherever the floor is
+};
+
+// Nothing but the wearer moves the view; teleports blink; a head that leaves the free air goes dark. When runtime,
+// session or service goes away no call throws: poll says kLost.
+class OpenXrSource final : public FrameSource {
+ public:
+  // `device` was made with the instance's hooks; it, `instance` and `floor` outlive the source.
+  OpenXrSource(const OpenXrInstance& instance, const Device& device, const FloorMap& floor, const Pose& start,
+               const HeadsetOptions& options);
+
+  std::string kind() const override { return "headset"; }
+  std::string description() const override;
+  SourceState poll() override;
+  FrameTiming wait() override;
+  void begin(FrameTiming& timing) override;
+  std::vector<ViewPose> locate(const FrameTiming& timing, ViewPose* head) override;
+  VkExtent2D view_extent() const override { return extent_; }
+  std::uint32_t view_count() const override { return static_cast<std::uint32_t>(views_.size()); }
+  VkFormat color_format() const override { return format_; }
+  FrameTarget acquire() override;
+  // The layer states the poses of the last locate; of `rendered_views` it takes the fields of view, which differ from
+  // the located ones only where a path is replayed.
+  void end(const FrameTiming& timing, const std::vector<ViewPose>& rendered_views) override;
+  float fade() const override;
+  std::vector<PoseError> take_pose_errors() override;
+  void finish() override;
+
+  bool was_focused() const { return state_.was_ever_focused(); }
+
+ private:
+  // A frame whose display time has not passed yet, with the head it was drawn for (in the session's space).
+  struct ShownPose {
+    XrTime time = 0;
+    std::int64_t predicted_display_ns = 0;
+    glm::dvec3 position_m{0.0};
+    glm::dquat orientation{1.0, 0.0, 0.0, 0.0};
+  };
+  struct Head {
+    glm::dvec3 position_m{0.0};
+    glm::dquat orientation{1.0, 0.0, 0.0, 0.0};
+  };
+
+  void create_session();
+  void create_space(bool seated);
+  void create_swapchain(VkExtent2D wanted);
+  // False when the runtime is gone (the state then says so); throws on any other error.
+  bool alive(XrResult result, const char* call);
+  void on_session_change(XrSessionState next);
+  bool locate_views(XrTime time, std::vector<XrView>& views);
+  static Head head_of(const std::vector<XrView>& views);
+  void place_rig(const Head& head);
+  void move(double dt_s, XrTime time);
+
+  const OpenXrInstance& instance_;
+  const Device& device_;
+  const FloorMap& floor_;
+  Pose anchor_;  // where the head is put when the rig is placed: the start, later where it last was
+  SessionState state_;
+  XrOwned<XrSession, xrDestroySession> session_;
+  std::unique_ptr<OpenXrInput> input_;
+  XrOwned<XrSpace, xrDestroySpace> space_;
+  double space_floor_m_ = 0.0;  // y of the floor in the session's space
+  std::string space_name_;
+  XrEnvironmentBlendMode blend_mode_ = XR_ENVIRONMENT_BLEND_MODE_OPAQUE;
+
+  XrOwned<XrSwapchain, xrDestroySwapchain> swapchain_;
+  std::vector<VkImage> images_;
+  VkExtent2D extent_{};
+  VkFormat format_ = VK_FORMAT_UNDEFINED;
+  bool image_held_ = false;
+
+  std::vector<XrView> views_;  // of the last locate
+  bool views_valid_ = false;
+  XrTime display_time_ = 0;    // of the frame under way, as the runtime gave it
+  XrTime space_changes_at_ = 0;
+  std::deque<ShownPose> shown_;
+
+  Rig rig_;
+  bool rig_placed_ = false;
+  Blink blink_;
+  WallFade wall_fade_;
+};
+
+}  // namespace probewalk
