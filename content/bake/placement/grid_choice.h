@@ -1,0 +1,27 @@
+// Where the lines of the probe grid run: layers at heights that suit sitting and standing heads on every storey,
+// horizontal spacing from the rooms' sizes, widened until the number of probes fits.
+#pragma once
+
+#include "content/bake/placement.h"
+#include "content/bake/placement/head_space.h"
+
+namespace probewalk {
+
+// Half of the typical distance across rooms, 1.6 to 3 m.
+double typical_spacing_m(const RayScene& rays, const HeadSpace& heads);
+
+// Vertices of the grid that some head needs and that have reachable air around them.
+std::size_t count_useful(const ProbeGrid& grid, const HeadSpace& heads);
+bool is_useful(const ProbeGrid& grid, const HeadSpace& heads, glm::ivec3 vertex);
+
+// `probe` of the result is sized and zero.
+ProbeGrid choose_grid(const HeadSpace& heads, double spacing_m, std::size_t max_probes);
+
+inline glm::dvec3 vertex_m(const ProbeGrid& grid, glm::ivec3 vertex) {
+  return grid.origin_m + grid.spacing_m * glm::dvec3(vertex);
+}
+inline std::size_t vertex_index(const ProbeGrid& grid, glm::ivec3 vertex) {
+  return (std::size_t(vertex.z) * grid.dims.y + vertex.y) * grid.dims.x + vertex.x;
+}
+
+}  // namespace probewalk

@@ -1,0 +1,335 @@
+#include "content/bake/placement/probe_sites.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+
+#include "content/bake/placement/grid_choice.h"
+
+namespace probewalk {
+namespace {
+
+constexpr double kClearance_m = 0.15;      // a probe nearer to a surface sees little else
+constexpr double kRoomy_m = 0.4;           // more clearance than this is worth nothing
+constexpr double kApart = 0.3;             // of the spacing: two probes closer than this are one
+constexpr std::size_t kEyesPerVertex = 32;
+constexpr int kWantedViews = 4;            // distinct probes that should see each head
+constexpr std::uint32_t kNobody = ~0u;
+
+bool sees(const RayScene& rays, glm::dvec3 a_m, glm::dvec3 b_m) {
+  return !rays.occluded(glm::vec3(a_m), glm::vec3(b_m - a_m), 0.0f, 1.0f);
+}
+
+// Offsets within half a spacing, in units of it, nearest first; the vertex itself is the first.
+std::vector<glm::dvec3> offsets() {
+  std::vector<glm::dvec3> list;
+  for (int code = 0; code < 125; ++code) list.push_back(glm::dvec3(code % 5 - 2, code / 5 % 5 - 2, code / 25 - 2) * 0.24);
+  std::stable_sort(list.begin(), list.end(), [](glm::dvec3 a, glm::dvec3 b) { return glm::dot(a, a) < glm::dot(b, b); });
+  return list;
+}
+
+class SiteChooser {
+ public:
+  SiteChooser(ProbeGrid& grid, const RayScene& rays, const Space& space, const HeadSpace& heads, std::size_t max_probes)
+      : grid_(grid), rays_(rays), space_(space), heads_(heads), max_probes_(std::max<std::size_t>(1, max_probes)) {
+    grid_.probe.assign(grid_.probe.size(), kNobody);
+    for (int z = 0; z < grid.dims.z; ++z) {
+      for (int y = 0; y < grid.dims.y; ++y) {
+        for (int x = 0; x < grid.dims.x; ++x) vertices_.push_back({x, y, z});
+      }
+    }
+  }
+
+  std::vector<ProbeSite> run(SiteCounts& counts) {
+    for (const glm::ivec3& vertex : vertices_) stand(vertex);
+    stand_in_doorways();
+    if (sites_.empty()) sites_.push_back({space_.start.position_m, room_of(space_.start.position_m)});
+    look_from_eyes();
+    share(counts);
+    add_where_few_see(counts);
+    serve_the_rest();
+    for (const glm::ivec3& vertex : vertices_) {
+      const std::uint32_t site = grid_.probe[vertex_index(grid_, vertex)];
+      if (owner_[site] == vertex_index(grid_, vertex) && sites_[site].position_m != vertex_m(grid_, vertex)) ++counts.moved;
+    }
+    return sorted_by_room();
+  }
+
+ private:
+  int room_of(glm::dvec3 point_m) const { return std::clamp(heads_.room(point_m), 0, int(space_.rooms.size()) - 1); }
+
+  std::vector<std::uint32_t> eyes_around(glm::ivec3 vertex, std::size_t most) const {
+    const glm::dvec3 at = vertex_m(grid_, vertex);
+    return heads_.eyes_in(reach_lower(vertex, at), reach_upper(vertex, at), most);
+  }
+  // Heads outside the grid are clamped to its edge, so the outermost vertices serve all that is beyond them.
+  glm::dvec3 reach_lower(glm::ivec3 vertex, glm::dvec3 at) const {
+    glm::dvec3 lower = at - grid_.spacing_m;
+    for (int k = 0; k < 3; ++k) lower[k] -= vertex[k] <= 1 ? grid_.spacing_m[k] : 0.0;
+    return lower;
+  }
+  glm::dvec3 reach_upper(glm::ivec3 vertex, glm::dvec3 at) const {
+    glm::dvec3 upper = at + grid_.spacing_m;
+    for (int k = 0; k < 3; ++k) upper[k] += vertex[k] >= grid_.dims[k] - 2 ? grid_.spacing_m[k] : 0.0;
+    return upper;
+  }
+
+  bool fits(glm::dvec3 point_m) const {
+    if (!heads_.holds(point_m) || clearance_m(rays_, point_m, kRoomy_m) < kClearance_m) return false;
+    return std::none_of(sites_.begin(), sites_.end(), [&](const ProbeSite& site) {
+      return glm::length((site.position_m - point_m) / grid_.spacing_m) < kApart;
+    });
+  }
+  double share_seen(glm::dvec3 point_m, const std::vector<std::uint32_t>& eyes) const {
+    std::size_t seen = 0;
+    for (const std::uint32_t e : eyes) seen += sees(rays_, point_m, heads_.eyes()[e]);
+    return double(seen) / double(eyes.size());
+  }
+
+  void own(glm::ivec3 vertex, glm::dvec3 point_m) {
+    grid_.probe[vertex_index(grid_, vertex)] = std::uint32_t(sites_.size());
+    owner_.push_back(vertex_index(grid_, vertex));
+    sites_.push_back({point_m, room_of(point_m)});
+  }
+
+  // The vertex's own place when it is good, else the best within half a spacing: seen by many of the heads around it,
+  // away from surfaces, not far off.
+  void stand(glm::ivec3 vertex) {
+    constexpr double kWorthAProbe = 0.1;
+    if (sites_.size() >= max_probes_ || !is_useful(grid_, heads_, vertex)) return;
+    const std::vector<std::uint32_t> eyes = eyes_around(vertex, kEyesPerVertex);
+    static const std::vector<glm::dvec3> kOffsets = offsets();
+    double most = -1.0;
+    glm::dvec3 best(0.0);
+    for (const glm::dvec3& offset : kOffsets) {
+      const glm::dvec3 point = vertex_m(grid_, vertex) + offset * grid_.spacing_m;
+      if (!fits(point)) continue;
+      const double seen = share_seen(point, eyes);
+      const double roomy = clearance_m(rays_, point, kRoomy_m) / kRoomy_m;
+      const double worth = seen + 0.3 * roomy - 0.5 * glm::length(offset);
+      if (seen < kWorthAProbe || worth <= most) continue;
+      most = worth;
+      best = point;
+      if (offset == glm::dvec3(0.0) && seen >= 0.6 && roomy >= 0.6) break;
+    }
+    if (most >= 0.0) own(vertex, best);
+  }
+
+  // A probe in a doorway sees both rooms: better than one that had to be moved anyway.
+  void stand_in_doorways() {
+    for (const Portal& portal : space_.portals) {
+      glm::dvec3 middle = std::accumulate(portal.polygon.begin(), portal.polygon.end(), glm::dvec3(0.0)) / double(portal.polygon.size());
+      double floor = HUGE_VAL;
+      for (const glm::dvec3& corner : portal.polygon) floor = std::min(floor, corner.y);
+      middle.y = std::min(middle.y, floor + 1.3);
+      std::size_t nearest = vertices_.size();
+      double least = 1.0;
+      for (std::size_t v = 0; v < vertices_.size(); ++v) {
+        const std::uint32_t site = grid_.probe[v];
+        const glm::dvec3 at = vertex_m(grid_, vertices_[v]);
+        if (site == kNobody || sites_[site].position_m == at) continue;
+        const double away = glm::length((at - middle) / grid_.spacing_m);
+        if (away < least) {
+          least = away;
+          nearest = v;
+        }
+      }
+      if (nearest == vertices_.size()) continue;
+      ProbeSite& site = sites_[grid_.probe[nearest]];
+      const ProbeSite before = site;
+      site.position_m = glm::dvec3(HUGE_VAL);  // does not count as a neighbour of its own new place
+      const std::vector<std::uint32_t> eyes = eyes_around(vertices_[nearest], kEyesPerVertex);
+      const bool better = fits(middle) && share_seen(middle, eyes) >= 0.8 * share_seen(before.position_m, eyes);
+      site = better ? ProbeSite{middle, room_of(middle)} : before;
+    }
+  }
+
+  std::array<glm::ivec3, 8> corners(glm::dvec3 head_m) const {
+    const glm::dvec3 cell = glm::floor((head_m - grid_.origin_m) / grid_.spacing_m);
+    const glm::ivec3 first = glm::ivec3(glm::clamp(cell, glm::dvec3(0.0), glm::dvec3(glm::max(grid_.dims - 2, 0))));
+    std::array<glm::ivec3, 8> out;
+    for (int k = 0; k < 8; ++k) out[k] = glm::min(first + glm::ivec3(k & 1, k >> 1 & 1, k >> 2), grid_.dims - 1);
+    return out;
+  }
+  int views(std::uint32_t eye) const {
+    std::array<std::uint32_t, 8> seen;
+    int count = 0;
+    for (const glm::ivec3& corner : corners(heads_.eyes()[eye])) {
+      const std::uint32_t site = grid_.probe[vertex_index(grid_, corner)];
+      if (site == kNobody || !visible(eye, site)) continue;
+      if (std::find(seen.begin(), seen.begin() + count, site) == seen.begin() + count) seen[count++] = site;
+    }
+    return count;
+  }
+  bool visible(std::uint32_t eye, std::uint32_t site) const { return seen_by_[site][eye]; }
+
+  void look_from_eyes() {
+    seen_by_.clear();
+    for (const ProbeSite& site : sites_) seen_by_.push_back(eyes_that_see(site.position_m));
+  }
+  std::vector<bool> eyes_that_see(glm::dvec3 point_m) const {
+    const double far = 3.0 * glm::length(grid_.spacing_m);
+    std::vector<bool> seen(heads_.eyes().size(), false);
+    for (std::size_t e = 0; e < seen.size(); ++e) {
+      seen[e] = glm::distance(heads_.eyes()[e], point_m) < far && sees(rays_, point_m, heads_.eyes()[e]);
+    }
+    return seen;
+  }
+
+  // A vertex without a probe of its own takes the one that adds most to what the heads around it see.
+  void share(SiteCounts& counts) {
+    for (const glm::ivec3& vertex : vertices_) {
+      std::uint32_t& served_by = grid_.probe[vertex_index(grid_, vertex)];
+      if (served_by != kNobody) continue;
+      const std::vector<std::uint32_t> eyes = heads_in_cells_of(vertex);
+      if (eyes.empty()) continue;
+      ++counts.shared;
+      served_by = best_for(vertex, eyes);
+    }
+  }
+  std::vector<std::uint32_t> heads_in_cells_of(glm::ivec3 vertex) const {
+    std::vector<std::uint32_t> eyes = eyes_around(vertex, heads_.eyes().size());
+    std::erase_if(eyes, [&](std::uint32_t e) {
+      const auto around = corners(heads_.eyes()[e]);
+      return std::find(around.begin(), around.end(), vertex) == around.end();
+    });
+    return eyes;
+  }
+  std::uint32_t best_for(glm::ivec3 vertex, const std::vector<std::uint32_t>& eyes) const {
+    std::vector<double> need(eyes.size());
+    for (std::size_t i = 0; i < eyes.size(); ++i) need[i] = 1.0 / (1.0 + std::pow(double(views(eyes[i])), 2.0));
+    std::uint32_t best = kNobody;
+    double most = 0.0;
+    for (std::uint32_t site = 0; site < sites_.size(); ++site) {
+      double gain = 0.0;
+      for (std::size_t i = 0; i < eyes.size(); ++i) {
+        if (!visible(eyes[i], site)) continue;
+        bool fresh = true;
+        for (const glm::ivec3& corner : corners(heads_.eyes()[eyes[i]])) {
+          fresh = fresh && grid_.probe[vertex_index(grid_, corner)] != site;
+        }
+        gain += fresh ? need[i] : 0.05 * need[i];
+      }
+      gain /= 1.0 + glm::length((sites_[site].position_m - vertex_m(grid_, vertex)) / grid_.spacing_m);
+      if (gain > most) {
+        most = gain;
+        best = site;
+      }
+    }
+    return best;
+  }
+
+  // Heads that too few probes see get another, at a vertex around them that has none of its own.
+  void add_where_few_see(SiteCounts& counts) {
+    static const std::vector<glm::dvec3> kOffsets = offsets();
+    for (std::uint32_t eye = 0; eye < heads_.eyes().size() && sites_.size() < max_probes_; ++eye) {
+      if (views(eye) >= kWantedViews) continue;
+      for (const glm::ivec3& vertex : corners(heads_.eyes()[eye])) {
+        const std::size_t v = vertex_index(grid_, vertex);
+        const std::uint32_t site = grid_.probe[v];
+        if (site != kNobody && owner_of(site) == v) continue;
+        const std::vector<std::uint32_t> eyes = heads_in_cells_of(vertex);
+        double most = 0.0;
+        glm::dvec3 best(0.0);
+        for (const glm::dvec3& offset : kOffsets) {
+          // Anywhere in the cells around the head's side of the vertex.
+          const glm::dvec3 point = 0.5 * (heads_.eyes()[eye] + vertex_m(grid_, vertex)) + offset * grid_.spacing_m;
+          if (!fits(point) || !sees(rays_, point, heads_.eyes()[eye])) continue;
+          const double worth = share_seen(point, eyes) + 0.3 * clearance_m(rays_, point, kRoomy_m) / kRoomy_m;
+          if (worth > most) {
+            most = worth;
+            best = point;
+          }
+        }
+        if (most <= 0.0) continue;
+        const int before = least_views(eyes);
+        const std::uint32_t old = grid_.probe[v];
+        own(vertex, best);
+        seen_by_.push_back(eyes_that_see(best));
+        if (least_views(eyes) < before) {  // another head lost the probe that it needed more
+          sites_.pop_back();
+          owner_.pop_back();
+          seen_by_.pop_back();
+          grid_.probe[v] = old;
+          continue;
+        }
+        ++counts.added;
+        if (views(eye) >= kWantedViews) break;
+      }
+    }
+  }
+  std::size_t owner_of(std::uint32_t site) const { return site < owner_.size() ? owner_[site] : vertices_.size(); }
+  int least_views(const std::vector<std::uint32_t>& eyes) const {
+    int least = 8;
+    for (const std::uint32_t e : eyes) least = std::min(least, views(e));
+    return least;
+  }
+
+  // Vertices far from heads, where rays pass: the nearest probe that sees them, else the nearest.
+  void serve_the_rest() {
+    constexpr std::size_t kTried = 12;
+    for (const glm::ivec3& vertex : vertices_) {
+      std::uint32_t& served_by = grid_.probe[vertex_index(grid_, vertex)];
+      if (served_by != kNobody) continue;
+      const glm::dvec3 at = vertex_m(grid_, vertex);
+      std::vector<std::uint32_t> order(sites_.size());
+      std::iota(order.begin(), order.end(), 0u);
+      std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+        return glm::distance(sites_[a].position_m, at) < glm::distance(sites_[b].position_m, at);
+      });
+      served_by = order.front();
+      for (std::size_t i = 0; i < std::min(kTried, order.size()); ++i) {
+        if (!sees(rays_, sites_[order[i]].position_m, at)) continue;
+        served_by = order[i];
+        break;
+      }
+    }
+  }
+
+  std::vector<ProbeSite> sorted_by_room() {
+    std::vector<std::uint32_t> order(sites_.size());
+    std::iota(order.begin(), order.end(), 0u);
+    std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+      return sites_[a].room != sites_[b].room ? sites_[a].room < sites_[b].room : owner_of(a) < owner_of(b);
+    });
+    std::vector<std::uint32_t> place(sites_.size());
+    std::vector<ProbeSite> sorted;
+    for (const std::uint32_t old : order) {
+      place[old] = std::uint32_t(sorted.size());
+      sorted.push_back(sites_[old]);
+    }
+    for (std::uint32_t& probe : grid_.probe) probe = place[probe];
+    return sorted;
+  }
+
+  ProbeGrid& grid_;
+  const RayScene& rays_;
+  const Space& space_;
+  const HeadSpace& heads_;
+  std::size_t max_probes_;
+  std::vector<glm::ivec3> vertices_;
+  std::vector<ProbeSite> sites_;
+  std::vector<std::size_t> owner_;           // vertex of each site
+  std::vector<std::vector<bool>> seen_by_;   // by site: which eyes see it
+};
+
+}  // namespace
+
+double clearance_m(const RayScene& rays, glm::dvec3 point_m, double far_m) {
+  double least = far_m;
+  for (int code = 0; code < 27; ++code) {
+    if (code == 13) continue;
+    const glm::vec3 direction = glm::normalize(glm::vec3(code % 3 - 1, code / 3 % 3 - 1, code / 9 - 1));
+    const SurfaceHit hit = rays.closest(glm::vec3(point_m), direction, 0.0f, float(least));
+    if (hit.hit) least = std::min(least, double(hit.t));
+  }
+  return least;
+}
+
+std::vector<ProbeSite> choose_sites(ProbeGrid& grid, const RayScene& rays, const Space& space, const HeadSpace& heads,
+                                    std::size_t max_probes, SiteCounts& counts) {
+  return SiteChooser(grid, rays, space, heads, max_probes).run(counts);
+}
+
+}  // namespace probewalk
