@@ -38,6 +38,9 @@ class LightField {
 
   // Content hash of everything the cache holds; equal between two builds of the same scene and options.
   std::string hash() const;
+  // Rays cast so far: by the cache, and shadow rays by outgoing().
+  std::uint64_t rays_cast() const;
+  std::size_t cache_points() const;
 
  private:
   struct Impl;

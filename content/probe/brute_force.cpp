@@ -199,8 +199,6 @@ BruteAnswer BruteForceProbe::trace(glm::dvec3 x, glm::dvec3 d, double t_start) c
     const bool endless = visit.t1 > 1e290;
     // At infinity only the sign of the slope matters.
     const double f1 = endless ? f_d : f_x + visit.t1 * f_d;
-    const double length = visit.t1 - visit.t0;
-    if (length > 0) answer.margin = std::min(answer.margin, std::min(std::abs(f0), endless ? 1.0 : std::abs(f1)));
     if (f0 <= 0 && (!known || piece.cut)) {
       answer.on_cut = piece.cut;
       answer.t = visit.t0;

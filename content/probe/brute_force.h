@@ -15,9 +15,6 @@ struct BruteAnswer {
   enum class Class { kHit, kMiss, kUnknown, kBehind } cls = Class::kMiss;
   double t = 0.0;
   bool on_cut = false;  // decided inside a triangle with a disconnected edge
-  // How close the decision was: smallest |height above the surface| / w at any piece's end before the answer. Answers of
-  // two implementations may differ where this is of the order of the arithmetic's rounding (a tie).
-  double margin = 1e300;
 };
 
 class BruteForceProbe {

@@ -6,10 +6,12 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "xr/latency/frame_record.h"
 #include "xr/latency/histogram.h"
+#include "xr/latency/worst_frames.h"
 
 namespace probewalk {
 
@@ -25,7 +27,7 @@ struct LedgerOptions {
 struct FrameQuantities {
   std::optional<std::int64_t> frame_ns;               // wait_end(n) - wait_end(n-1)
   std::optional<std::int64_t> cpu_wait_ns;            // inside the runtime's wait
-  std::optional<std::int64_t> cpu_busy_ns;            // wait_end to end_end less time blocked
+  std::optional<std::int64_t> cpu_busy_ns;            // wait_end to end_end less time blocked; rendered frames only
   std::optional<std::int64_t> gpu_busy_ns;            // gpu_begin to gpu_end
   std::optional<std::int64_t> gpu_trace_ns;           // the trace pass
   std::optional<std::int64_t> prediction_horizon_ns;  // predicted_display - locate_late_end
@@ -35,28 +37,15 @@ struct FrameQuantities {
   std::uint32_t missed = 0;           // refreshes between the frame before and this one that no frame was made for
   std::optional<bool> within_budget;  // cpu_busy and gpu_busy both <= period
 };
-// `previous` is null for the first frame of a run.
+// `previous` is null for the first frame that counts.
 FrameQuantities derive(const FrameRecord& frame, const FrameRecord* previous, bool has_deadlines);
 
-// One quantity over the run. Values are in `unit / scale`: the histogram holds integers.
+// One quantity over the run. The histogram holds integers: a value in `unit` is one of them divided by `scale`.
 struct QuantitySummary {
   std::string name;  // key in summary.json: "frame", "cpu_busy", ..., "pose_error_mm"
   std::string unit;  // of the values in summary.json: "ns", "mm", "deg"
   double scale = 1.0;
   Histogram histogram;
-};
-
-// One of the longest frames, with what made it long.
-struct WorstFrame {
-  std::uint64_t frame_id = 0;
-  std::size_t index = 0;         // in Ledger::frames()
-  std::int64_t frame_ns = 0;
-  std::int64_t cpu_busy_ns = 0;  // of the frame before, whose work fills this interval
-  std::int64_t gpu_busy_ns = 0;
-  std::uint32_t missed = 0;
-  std::string stage;             // the stage that exceeded its median most: "record", "gpu_trace", "wait", ...
-  std::int64_t excess_ns = 0;    // by how much
-  std::string cause;             // a sentence: the stage, and upload, room switch or pipeline build where there was one
 };
 
 struct Summary {
@@ -86,6 +75,8 @@ class Ledger {
   // Frames in the order of their waits.
   void add(const FrameRecord& frame) { frames_.push_back(frame); }
   const std::vector<FrameRecord>& frames() const { return frames_; }
+  // Index of the first frame that counts.
+  std::size_t first_counted() const;
   const LedgerOptions& options() const { return options_; }
   Summary summary() const;
 

@@ -1,0 +1,168 @@
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <vector>
+
+#include "content/bake/bake_probe.h"
+
+namespace probewalk {
+namespace {
+
+constexpr double kMinDistance_m = 1e-4;  // as for the samples of the geometry
+// A sub-sample counts when it lies on the surface that the centre sees: within this share of the centre's plane, or
+// this near to it for something curved that faces the same way.
+constexpr float kSamePlane = 2e-3f;
+constexpr float kCurved = 0.03f;
+constexpr float kSameFacing = 0.7f;
+// A texel whose neighbours see the same surface and differ by less than this is as good as its centre.
+constexpr float kEven = 0.02f;
+constexpr float kEvenFloor_cd_m2 = 1e-3f;
+// Sub-samples within the texel, rotated so that no two share a row or column (the centre is a fifth).
+constexpr std::array<glm::dvec2, 4> kSubSamples{{{-0.375, -0.125}, {0.125, -0.375}, {0.375, 0.125}, {-0.125, 0.375}}};
+
+struct Centre {
+  glm::vec3 radiance{0.0f};
+  float w = 0.0f;             // 0 = sky
+  glm::vec3 normal{0.0f};     // of the plane, unit, unoriented
+  float plane_distance = 0.0f;  // normal . (point - probe)
+  std::uint32_t triangle = 0;
+};
+
+class RadianceBaker {
+ public:
+  RadianceBaker(const RayScene& rays, const LightField& light, glm::dvec3 position_m, int r)
+      : rays_(rays), light_(light), origin_m_(position_m), r_(r), centres_(std::size_t(r) * r) {}
+
+  ProbeRadiance bake(float radiance_scale, std::uint64_t* rays_cast) {
+    for_each_row([&](int j, std::uint64_t& cast) {
+      for (int i = 0; i < r_; ++i) centres_[texel(i, j)] = see_centre(i, j);
+      cast += r_;
+    });
+    std::vector<glm::vec3> level(centres_.size());
+    for_each_row([&](int j, std::uint64_t& cast) {
+      for (int i = 0; i < r_; ++i) level[texel(i, j)] = radiance_scale * (is_even(i, j) ? centres_[texel(i, j)].radiance : average(i, j, cast));
+    });
+    ProbeRadiance map;
+    map.r = r_;
+    map.texel_w.resize(centres_.size());
+    for (std::size_t k = 0; k < centres_.size(); ++k) map.texel_w[k] = encode_texel_w(centres_[k].w);
+    map.rgb9e5.reserve(mip_chain_texels(r_));
+    append_mips(std::move(level), map.rgb9e5);
+    if (rays_cast) *rays_cast += cast_.load();
+    return map;
+  }
+
+ private:
+  std::size_t texel(int i, int j) const { return std::size_t(j) * r_ + i; }
+  glm::dvec3 point(double i, double j) const {
+    return octahedral_point((2.0 * i + 1.0) / r_ - 1.0, (2.0 * j + 1.0) / r_ - 1.0);
+  }
+  // Square root of the texel's solid angle: du dv / |q|^3 on the octahedron.
+  float spread_rad(double length) const { return static_cast<float>(2.0 / r_ / (length * std::sqrt(length))); }
+
+  template <typename Work>
+  void for_each_row(Work&& work) {
+    tbb::parallel_for(0, r_, [&](int j) {
+      std::uint64_t cast = 0;
+      work(j, cast);
+      cast_ += cast;
+    });
+  }
+
+  Centre see_centre(int i, int j) const {
+    const glm::dvec3 q = point(i, j);
+    const double length = glm::length(q);
+    const glm::vec3 direction(q / length);
+    Centre centre;
+    SurfaceHit hit;
+    centre.radiance = light_.along(glm::vec3(origin_m_), direction, spread_rad(length), &hit);
+    if (!hit.hit) return centre;
+    centre.w = static_cast<float>(length / std::max(double(hit.t), kMinDistance_m));
+    centre.normal = hit.geometric_normal;
+    centre.plane_distance = glm::dot(hit.geometric_normal, direction) * hit.t;
+    centre.triangle = hit.triangle;
+    return centre;
+  }
+
+  // Whether a hit along a unit direction continues the surface that the centre sees.
+  static bool continues(const Centre& centre, glm::vec3 direction, float t, glm::vec3 normal, std::uint32_t triangle) {
+    if (triangle == centre.triangle) return true;
+    const float on_plane = glm::dot(centre.normal, direction) * t;
+    const float error = std::abs(on_plane - centre.plane_distance);
+    const float scale = std::max(std::abs(centre.plane_distance), 0.05f * t);
+    if (error < kSamePlane * scale) return std::abs(glm::dot(centre.normal, normal)) > kSameFacing;
+    return error < kCurved * scale && std::abs(glm::dot(centre.normal, normal)) > kSameFacing;
+  }
+
+  bool is_even(int i, int j) const {
+    const Centre& own = centres_[texel(i, j)];
+    for (auto [x, y] : {std::pair(i - 1, j), std::pair(i + 1, j), std::pair(i, j - 1), std::pair(i, j + 1)}) {
+      if (x < 0 || y < 0 || x >= r_ || y >= r_) continue;
+      const Centre& other = centres_[texel(x, y)];
+      if ((other.w > 0.0f) != (own.w > 0.0f)) return false;
+      const glm::vec3 difference = glm::abs(other.radiance - own.radiance);
+      const glm::vec3 tolerance = kEven * glm::max(own.radiance, other.radiance) + kEvenFloor_cd_m2;
+      if (glm::any(glm::greaterThan(difference, tolerance))) return false;
+    }
+    return true;
+  }
+
+  glm::vec3 average(int i, int j, std::uint64_t& cast) const {
+    const Centre& centre = centres_[texel(i, j)];
+    glm::vec3 sum = centre.radiance;
+    float count = 1.0f;
+    for (glm::dvec2 offset : kSubSamples) {
+      const glm::dvec3 q = point(i + offset.x, j + offset.y);
+      const double length = glm::length(q);
+      const glm::vec3 direction(q / length);
+      const SurfaceHit hit = rays_.closest(glm::vec3(origin_m_), direction);
+      ++cast;
+      if (!hit.hit || centre.w == 0.0f) {
+        if (hit.hit || centre.w != 0.0f) continue;
+        sum += rays_.scene().sky.radiance(direction);
+      } else {
+        if (!continues(centre, direction, hit.t, hit.geometric_normal, hit.triangle)) continue;
+        // Half the texel's width: four of them share its area.
+        sum += light_.outgoing(hit, glm::vec3(origin_m_), direction, 0.5f * spread_rad(length) * hit.t);
+      }
+      count += 1.0f;
+    }
+    return sum / count;
+  }
+
+  // Box-filtered in linear floats, so that no rounding of one mip reaches the next.
+  void append_mips(std::vector<glm::vec3> level, std::vector<std::uint32_t>& words) const {
+    for (int side = r_;; side /= 2) {
+      for (const glm::vec3& value : level) words.push_back(encode_rgb9e5(value));
+      if (side == 1) return;
+      const int half = side / 2;
+      std::vector<glm::vec3> next(std::size_t(half) * half);
+      for (int j = 0; j < half; ++j) {
+        for (int i = 0; i < half; ++i) {
+          const std::size_t k = std::size_t(2 * j) * side + 2 * i;
+          next[std::size_t(j) * half + i] = 0.25f * (level[k] + level[k + 1] + level[k + side] + level[k + side + 1]);
+        }
+      }
+      level = std::move(next);
+    }
+  }
+
+  const RayScene& rays_;
+  const LightField& light_;
+  const glm::dvec3 origin_m_;
+  const int r_;
+  std::vector<Centre> centres_;
+  std::atomic<std::uint64_t> cast_{0};
+};
+
+}  // namespace
+
+ProbeRadiance bake_radiance(const RayScene& rays, const LightField& light, glm::dvec3 position_m, int r,
+                            float radiance_scale, std::uint64_t* rays_cast) {
+  return RadianceBaker(rays, light, position_m, r).bake(radiance_scale, rays_cast);
+}
+
+}  // namespace probewalk

@@ -1,0 +1,153 @@
+#include "content/bake/irradiance_cache.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <numbers>
+
+#include "content/bake/patterns.h"
+#include "content/bake/surface_point.h"
+#include "content/error.h"
+
+namespace probewalk {
+namespace {
+
+// More points than this take longer to gather than they add; the spacing is raised instead.
+constexpr std::size_t kMaxPoints = 300000;
+// The first bounce carries the windows and lamps, and is gathered with more rays than the later, smoother ones.
+constexpr int kFirstGather = 4;
+constexpr int kSecondGather = 2;
+constexpr float kMaxTailRatio = 0.95f;
+
+using Values = std::vector<glm::vec3>;
+
+glm::dvec3 total(const Values& values) {
+  glm::dvec3 sum(0.0);
+  for (const glm::vec3& v : values) sum += glm::dvec3(v);
+  return sum;
+}
+
+void add(Values& to, const Values& values) {
+  for (std::size_t k = 0; k < to.size(); ++k) to[k] += values[k];
+}
+
+}  // namespace
+
+// Light that one set of values, reflected once, and optionally the emitters that are not sampled directly, send to every
+// cache point.
+struct IrradianceCache::Gather {
+  const Scene& scene;
+  const RayScene& rays;
+  const DirectLight& direct;
+  const CachePoints& points;
+  std::uint32_t seed;
+  Progress& progress;
+  std::atomic<std::uint64_t> done{0};
+
+  Values direct_light(std::uint64_t& cast) {
+    Values values(points.size(), glm::vec3(0.0f));
+    std::atomic<std::uint64_t> all_cast{0};
+    for_each_point([&](std::size_t k) {
+      std::uint64_t own = 0;
+      const CachePoints::Point& p = points[k];
+      values[k] = direct.irradiance(p.position_m, p.geometric_normal, p.normal, own);
+      all_cast += own;
+    });
+    cast += all_cast;
+    return fill_hidden(values);
+  }
+
+  Values gather(const Values& source, int samples, std::uint32_t pass, Values* emitted, std::uint64_t& cast) {
+    Values values(points.size(), glm::vec3(0.0f));
+    if (emitted) emitted->assign(points.size(), glm::vec3(0.0f));
+    for_each_point([&](std::size_t k) { gather_point(k, source, samples, pass, values[k], emitted ? &(*emitted)[k] : nullptr); });
+    cast += points.size() * static_cast<std::uint64_t>(samples);
+    if (emitted) *emitted = fill_hidden(*emitted);
+    return fill_hidden(values);
+  }
+
+ private:
+  template <typename Work>
+  void for_each_point(Work&& work) {
+    tbb::parallel_for(std::size_t(0), points.size(), [&](std::size_t k) {
+      if (progress.cancelled()) return;
+      if (!points[k].hidden) work(k);
+      const std::uint64_t now = ++done;
+      if (now % 1024 == 0) progress.advance(now);
+    });
+    if (progress.cancelled()) throw Interrupted("interrupted while lighting; give the same command again to start over from there");
+  }
+
+  void gather_point(std::size_t k, const Values& source, int samples, std::uint32_t pass, glm::vec3& reflected,
+                    glm::vec3* emitted) const {
+    const CachePoints::Point& point = points[k];
+    glm::vec3 tangent, bitangent;
+    tangent_frame(point.normal, tangent, bitangent);
+    const glm::vec3 origin = point.position_m + point.geometric_normal * ray_offset_m(point.position_m);
+    const std::uint32_t turn = mix_bits(static_cast<std::uint32_t>(k), seed + pass);
+    const float spread_rad = std::sqrt(std::numbers::pi_v<float> / static_cast<float>(samples));
+    glm::vec3 sum(0.0f), own(0.0f);
+    for (int s = 0; s < samples; ++s) {
+      const glm::vec3 local = cosine_direction(rotate_pattern(hammersley(s, samples), turn));
+      const glm::vec3 direction = tangent * local.x + bitangent * local.y + point.normal * local.z;
+      if (glm::dot(direction, point.geometric_normal) <= 0.0f) continue;
+      const SurfaceHit hit = rays.closest(origin, direction);
+      if (!hit.hit) {
+        if (emitted) own += scene.sky.radiance(direction);
+        continue;
+      }
+      const SurfacePoint surface = surface_at(scene, hit, direction, hit.t * spread_rad);
+      if (surface.unlit) continue;
+      if (emitted && !direct.emitters().is_patch[hit.triangle]) own += surface.emission_cd_m2;
+      sum += surface.albedo * points.interpolate(source, surface.position_m, surface.normal);
+    }
+    // Cosine-distributed: irradiance = pi * mean radiance; reflected radiance = albedo / pi * irradiance.
+    reflected = sum / static_cast<float>(samples);
+    if (emitted) *emitted = own * (std::numbers::pi_v<float> / static_cast<float>(samples));
+  }
+
+  // Hidden points take what their neighbours have, for places that only they are near.
+  Values fill_hidden(Values values) const {
+    Values filled = values;
+    tbb::parallel_for(std::size_t(0), points.size(), [&](std::size_t k) {
+      const CachePoints::Point& p = points[k];
+      if (p.hidden) filled[k] = points.interpolate(values, p.position_m, p.normal, false);
+    });
+    return filled;
+  }
+};
+
+IrradianceCache::IrradianceCache(const Scene& scene, const RayScene& rays, const DirectLight& direct,
+                                 const LightOptions& options, Progress& progress)
+    : points_(scene, rays, options.cache_spacing_m, kMaxPoints), rays_cast_(points_.rays_cast()) {
+  Gather gather{scene, rays, direct, points_, options.seed, progress};
+  const int bounces = std::max(options.bounces, 0);
+  progress.begin("light cache", points_.size() * static_cast<std::uint64_t>(2 + std::max(bounces, 1)), "points");
+
+  const Values direct_values = gather.direct_light(rays_cast_);
+  // The series of bounces: each gathers what the one before has added.
+  Values emitted;
+  Values last = gather.gather(direct_values, options.samples * kFirstGather, 0, &emitted, rays_cast_);
+  indirect_ = emitted;
+  if (bounces == 0) return;
+  add(indirect_, last);
+  add(last, emitted);
+  glm::dvec3 before = total(last), now = before;
+  for (int bounce = 2; bounce <= bounces + 1; ++bounce) {
+    last = gather.gather(last, options.samples * (bounce == 2 ? kSecondGather : 1), bounce, nullptr, rays_cast_);
+    if (bounce <= bounces) add(indirect_, last);
+    before = now;
+    now = total(last);
+  }
+  // What the bounces beyond would add, each a constant share of the one before.
+  glm::vec3 tail(0.0f);
+  for (int c = 0; c < 3; ++c) {
+    const float ratio = before[c] > 0.0 ? std::min(static_cast<float>(now[c] / before[c]), kMaxTailRatio) : 0.0f;
+    tail[c] = 1.0f / (1.0f - ratio);
+  }
+  for (std::size_t k = 0; k < indirect_.size(); ++k) indirect_[k] += last[k] * tail;
+}
+
+}  // namespace probewalk

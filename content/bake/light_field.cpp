@@ -1,0 +1,66 @@
+#include "content/bake/light_field.h"
+
+#include <fmt/format.h>
+#include <tbb/combinable.h>
+#include <tbb/global_control.h>
+
+#include <functional>
+#include <numbers>
+#include <optional>
+#include <span>
+
+#include "content/bake/direct_light.h"
+#include "content/bake/irradiance_cache.h"
+#include "content/bake/surface_point.h"
+#include "content/pack/pack_io.h"
+
+namespace probewalk {
+
+struct LightField::Impl {
+  Impl(const Scene& scene_in, const RayScene& rays_in, const LightOptions& options, Progress& progress)
+      : scene(scene_in), rays(rays_in), direct(scene_in, rays_in), cache(scene_in, rays_in, direct, options, progress) {}
+
+  const Scene& scene;
+  const RayScene& rays;
+  DirectLight direct;
+  IrradianceCache cache;
+  mutable tbb::combinable<std::uint64_t> rays_cast{[] { return std::uint64_t(0); }};
+};
+
+LightField::LightField(const Scene& scene, const RayScene& rays, const LightOptions& options, Progress& progress) {
+  std::optional<tbb::global_control> limit;
+  if (options.threads > 0) limit.emplace(tbb::global_control::max_allowed_parallelism, options.threads);
+  impl_ = std::make_unique<Impl>(scene, rays, options, progress);
+  if (impl_->cache.spacing_m() > 1.001 * options.cache_spacing_m) {
+    progress.note(fmt::format("indirect light is cached every {:.2f} m instead of {:.2f} m: the scene is large",
+                              impl_->cache.spacing_m(), options.cache_spacing_m));
+  }
+}
+
+LightField::~LightField() = default;
+
+glm::vec3 LightField::outgoing(const SurfaceHit& hit, glm::vec3, glm::vec3 unit_direction, float footprint_m) const {
+  const SurfacePoint point = surface_at(impl_->scene, hit, unit_direction, footprint_m);
+  if (point.unlit || point.albedo == glm::vec3(0.0f)) return point.emission_cd_m2;
+  const glm::vec3 direct =
+      impl_->direct.irradiance(point.position_m, point.geometric_normal, point.normal, impl_->rays_cast.local());
+  const glm::vec3 indirect = impl_->cache.indirect(point.position_m, point.normal);
+  return point.emission_cd_m2 + point.albedo * std::numbers::inv_pi_v<float> * (direct + indirect);
+}
+
+glm::vec3 LightField::along(glm::vec3 origin_m, glm::vec3 unit_direction, float spread_rad, SurfaceHit* hit) const {
+  const SurfaceHit found = impl_->rays.closest(origin_m, unit_direction);
+  if (hit) *hit = found;
+  if (!found.hit) return impl_->scene.sky.radiance(unit_direction);
+  return outgoing(found, origin_m, unit_direction, found.t * spread_rad);
+}
+
+std::uint64_t LightField::rays_cast() const {
+  return impl_->cache.rays_cast() + impl_->rays_cast.combine(std::plus<>());
+}
+
+std::size_t LightField::cache_points() const { return impl_->cache.size(); }
+
+std::string LightField::hash() const { return content_hash(std::as_bytes(std::span(impl_->cache.values()))); }
+
+}  // namespace probewalk
