@@ -38,7 +38,7 @@ struct Texture {
 
 struct TextureRef {
   int texture = -1;  // index into Scene::textures, -1 = none
-  int uv_set = 0;    // 0 or 1
+  int uv_set = 0;    // 0 or 1: Scene::uvs
 };
 
 struct Material {
@@ -58,13 +58,19 @@ struct Material {
 // Radiance of an unlit material with base colour 1.
 inline constexpr float kUnlitCdM2 = 100.0f;
 
+// Radiance of an emissiveFactor of 1 in a material without KHR_materials_emissive_strength: that of a white screen.
+// The extension's strengths are radiances already; taken so, a plain factor would be black beside any real light.
+inline constexpr float kPlainEmissiveCdM2 = 100.0f;
+
 struct Light {
   enum class Kind { kPoint, kSpot, kDirectional };
   std::string name;
   Kind kind = Kind::kPoint;
   glm::vec3 position_m{0.0f};
   glm::vec3 direction{0.0f, 0.0f, -1.0f};  // unit, the way light travels (spot, directional)
-  glm::vec3 intensity{0.0f};               // colour * intensity: candela (point, spot) or lux (directional)
+  // Colour * intensity: candela (point, spot) or lux (directional). Where the file is not in metres, candela are scaled
+  // so that surfaces get the illuminance they have in the file's own units.
+  glm::vec3 intensity{0.0f};
   float range_m = 0.0f;                    // 0 = unlimited
   float inner_cone_rad = 0.0f;
   float outer_cone_rad = 0.7853982f;
@@ -97,7 +103,7 @@ struct Scene {
   // Geometry: one triangle soup with shared vertices, in metres (scale applied), world space.
   std::vector<glm::vec3> positions_m;
   std::vector<glm::vec3> normals;             // per vertex, unit; shading only
-  std::vector<glm::vec2> uvs[2];              // per vertex; empty when no primitive has that set
+  std::vector<glm::vec2> uvs[2];              // per vertex, transforms applied; empty when no material needs the set
   std::vector<glm::uvec3> triangles;          // indices of vertices, counter-clockwise seen from the front
   std::vector<std::uint32_t> triangle_material;
   std::vector<std::uint32_t> triangle_object;  // index of the glTF node it came from
@@ -124,6 +130,15 @@ struct SceneLoadOptions {
 };
 
 // Reads .gltf and .glb. Throws BadInput (content/error.h) naming file, value and remedy.
+//
+// Beside what glTF defines, `extras` say what it has no words for; all lengths in file units, radiances in cd/m^2:
+// - scene: "probewalk_sky": {"zenith": [r, g, b], "horizon": [...], "ground": [...]}, "probewalk_start": [x, y, z]
+// - node: "probewalk_room": "Name" with "probewalk_room_min" and "probewalk_room_max", a box in the node's own space.
+// A rooms file (`rooms_file`, else rooms.json beside the scene) wins over the nodes' rooms:
+// {"rooms": [{"id": "hall", "name": "Hall", "min": [x, y, z], "max": [x, y, z]}]}.
+//
+// A scene without light (no light source, no sky, emission too weak to see by, not everything unlit) is given the
+// default of default_light.h, which adds emissive panels to its triangles; light_statement says so.
 Scene load_scene(const std::filesystem::path& file, const SceneLoadOptions& options = {});
 
 }  // namespace probewalk

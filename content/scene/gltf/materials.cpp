@@ -1,0 +1,234 @@
+#include "content/scene/gltf/materials.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <tuple>
+
+#include "content/error.h"
+#include "content/scene/gltf/images.h"
+#include "content/scene/gltf/limits.h"
+#include "content/scene/texture.h"
+
+namespace probewalk::gltf {
+namespace {
+
+WrapMode wrap_mode(int value) {
+  switch (value) {
+    case TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE:
+      return WrapMode::kClampToEdge;
+    case TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT:
+      return WrapMode::kMirroredRepeat;
+    default:
+      return WrapMode::kRepeat;
+  }
+}
+
+// Decodes pictures and makes one Texture for each distinct use of one.
+class TextureImporter {
+ public:
+  TextureImporter(const Document& document, BufferViews& views, Scene& scene)
+      : document_(document), views_(views), scene_(scene) {}
+
+  // Index into Scene::textures, or -1 (with a warning) when the picture cannot be had.
+  int import(int texture, bool weight_by_alpha) {
+    const tinygltf::Texture& description = find(texture);
+    if (description.source < 0) {
+      warn(fmt::format("texture {} has no PNG or JPEG", texture));
+      return -1;
+    }
+    tinygltf::Sampler sampler;
+    if (description.sampler >= 0) sampler = find_sampler(texture, description.sampler);
+    const Key key{description.source, wrap_mode(sampler.wrapS), wrap_mode(sampler.wrapT), weight_by_alpha};
+    const auto known = textures_.find(key);
+    if (known != textures_.end()) return known->second;
+
+    const DecodedImage image = decode(description.source);
+    int index = -1;
+    if (!image.problem.empty()) {
+      warn(fmt::format("image '{}' {}", document_.images[description.source].name, image.problem));
+    } else {
+      count_texels(image.level);
+      Texture result;
+      result.name = document_.images[description.source].name;
+      result.wrap_u = std::get<1>(key);
+      result.wrap_v = std::get<2>(key);
+      result.levels.push_back(image.level);
+      build_mip_chain(result, weight_by_alpha);
+      index = static_cast<int>(scene_.textures.size());
+      scene_.textures.push_back(std::move(result));
+    }
+    textures_.emplace(key, index);
+    return index;
+  }
+
+  // Mean of two channels of a picture, (1, 1) when it cannot be had.
+  glm::vec2 mean(int texture, int first_channel, int second_channel) {
+    const tinygltf::Texture& description = find(texture);
+    if (description.source < 0) return glm::vec2(1.0f);
+    const DecodedImage image = decode(description.source);
+    if (!image.problem.empty()) return glm::vec2(1.0f);
+    std::uint64_t first = 0;
+    std::uint64_t second = 0;
+    const std::vector<std::uint8_t>& rgba = image.level.rgba;
+    for (std::size_t i = 0; i < rgba.size(); i += 4) {
+      first += rgba[i + first_channel];
+      second += rgba[i + second_channel];
+    }
+    const double total = 255.0 * static_cast<double>(rgba.size() / 4);
+    return {static_cast<double>(first) / total, static_cast<double>(second) / total};
+  }
+
+ private:
+  using Key = std::tuple<int, WrapMode, WrapMode, bool>;
+
+  const tinygltf::Texture& find(int texture) const {
+    if (texture < 0 || static_cast<std::size_t>(texture) >= document_.model.textures.size()) {
+      throw BadInput(fmt::format("{}: texture {} does not exist", document_.file, texture));
+    }
+    const tinygltf::Texture& description = document_.model.textures[texture];
+    if (description.source >= 0 && static_cast<std::size_t>(description.source) >= document_.images.size()) {
+      throw BadInput(fmt::format("{}: texture {} refers to image {}, which does not exist", document_.file, texture,
+                                 description.source));
+    }
+    return description;
+  }
+
+  const tinygltf::Sampler& find_sampler(int texture, int sampler) const {
+    if (static_cast<std::size_t>(sampler) >= document_.model.samplers.size()) {
+      throw BadInput(fmt::format("{}: texture {} refers to sampler {}, which does not exist", document_.file, texture,
+                                 sampler));
+    }
+    return document_.model.samplers[sampler];
+  }
+
+  DecodedImage decode(int source) {
+    const EncodedImage& encoded = document_.images[source];
+    if (encoded.bytes) return decode_image(*encoded.bytes);
+    if (encoded.buffer_view >= 0) return decode_image(views_.bytes(encoded.buffer_view));
+    return {{}, fmt::format("is missing ({})", encoded.problem)};
+  }
+
+  void count_texels(const Texture::Level& level) {
+    texels_ += static_cast<std::uint64_t>(level.width_px) * static_cast<std::uint64_t>(level.height_px);
+    if (texels_ > kMaxTexels) {
+      throw BadInput(fmt::format("{}: more than {} texels; scale its pictures down", document_.file, kMaxTexels));
+    }
+  }
+
+  void warn(const std::string& what) { scene_.warnings.push_back(what + "; the plain colour is used"); }
+
+  const Document& document_;
+  BufferViews& views_;
+  Scene& scene_;
+  std::map<Key, int> textures_;
+  std::uint64_t texels_ = 0;
+};
+
+double number(const tinygltf::Value& object, const char* key, double fallback) {
+  return object.Has(key) && object.Get(key).IsNumber() ? object.Get(key).GetNumberAsDouble() : fallback;
+}
+
+glm::dvec2 pair(const tinygltf::Value& object, const char* key, glm::dvec2 fallback) {
+  if (!object.Has(key) || object.Get(key).ArrayLen() != 2) return fallback;
+  const tinygltf::Value& array = object.Get(key);
+  if (!array.Get(0).IsNumber() || !array.Get(1).IsNumber()) return fallback;
+  return {array.Get(0).GetNumberAsDouble(), array.Get(1).GetNumberAsDouble()};
+}
+
+UvSource uv_source(const tinygltf::TextureInfo& info) {
+  UvSource source;
+  source.set = info.texCoord;
+  const auto extension = info.extensions.find("KHR_texture_transform");
+  if (extension == info.extensions.end() || !extension->second.IsObject()) return source;
+  const tinygltf::Value& object = extension->second;
+  const glm::dvec2 offset = pair(object, "offset", glm::dvec2(0.0));
+  const glm::dvec2 scale = pair(object, "scale", glm::dvec2(1.0));
+  const double angle = number(object, "rotation", 0.0);
+  source.set = static_cast<int>(std::clamp(number(object, "texCoord", source.set), 0.0, 64.0));
+  // translation * rotation * scale, columns first, as in the extension's text.
+  const glm::dmat3 translation(1, 0, 0, 0, 1, 0, offset.x, offset.y, 1);
+  const glm::dmat3 rotation(std::cos(angle), -std::sin(angle), 0, std::sin(angle), std::cos(angle), 0, 0, 0, 1);
+  const glm::dmat3 scaling(scale.x, 0, 0, 0, scale.y, 0, 0, 0, 1);
+  source.transform = translation * rotation * scaling;
+  return source;
+}
+
+float within(double value, double low, double high, double fallback) {
+  return static_cast<float>(std::isfinite(value) ? std::clamp(value, low, high) : fallback);
+}
+
+AlphaMode alpha_mode(const std::string& file, const tinygltf::Material& material) {
+  if (material.alphaMode.empty() || material.alphaMode == "OPAQUE") return AlphaMode::kOpaque;
+  if (material.alphaMode == "MASK") return AlphaMode::kMask;
+  if (material.alphaMode == "BLEND") return AlphaMode::kBlend;
+  throw BadInput(fmt::format("{}: material '{}' has alphaMode '{}'; known are OPAQUE, MASK, BLEND", file, material.name,
+                             material.alphaMode));
+}
+
+// Radiance that an emissiveFactor of 1 stands for.
+float emissive_unit_cd_m2(const tinygltf::Material& material) {
+  const auto extension = material.extensions.find("KHR_materials_emissive_strength");
+  if (extension == material.extensions.end()) return kPlainEmissiveCdM2;
+  return within(number(extension->second, "emissiveStrength", 1.0), 0.0, 1e9, 1.0);
+}
+
+Material convert(const Document& document, const tinygltf::Material& source, TextureImporter& textures, UvSources& uvs) {
+  const tinygltf::PbrMetallicRoughness& pbr = source.pbrMetallicRoughness;
+  Material material;
+  material.name = source.name;
+  for (int c = 0; c < 4 && c < static_cast<int>(pbr.baseColorFactor.size()); ++c) {
+    material.base_color_factor[c] = within(pbr.baseColorFactor[c], 0.0, 1.0, 1.0);
+  }
+  material.alpha_mode = alpha_mode(document.file, source);
+  material.alpha_cutoff = within(source.alphaCutoff, 0.0, 2.0, 0.5);
+  material.double_sided = source.doubleSided;
+  material.unlit = source.extensions.contains("KHR_materials_unlit");
+  material.metallic = within(pbr.metallicFactor, 0.0, 1.0, 1.0);
+  material.roughness = within(pbr.roughnessFactor, 0.0, 1.0, 1.0);
+  if (pbr.metallicRoughnessTexture.index >= 0) {
+    const glm::vec2 mean = textures.mean(pbr.metallicRoughnessTexture.index, 1, 2);
+    material.roughness *= mean.x;
+    material.metallic *= mean.y;
+  }
+  if (pbr.baseColorTexture.index >= 0) {
+    material.base_color.texture =
+        textures.import(pbr.baseColorTexture.index, material.alpha_mode != AlphaMode::kOpaque);
+    uvs[0] = uv_source(pbr.baseColorTexture);
+  }
+  for (int c = 0; c < 3 && c < static_cast<int>(source.emissiveFactor.size()); ++c) {
+    // Exporters write factors above 1 where the strength extension is unknown to them; the light is meant.
+    material.emissive_cd_m2[c] = within(source.emissiveFactor[c], 0.0, 1e6, 0.0) * emissive_unit_cd_m2(source);
+  }
+  if (source.emissiveTexture.index >= 0) {
+    material.emissive.texture = textures.import(source.emissiveTexture.index, false);
+    uvs[1] = uv_source(source.emissiveTexture);
+    const bool shared = material.base_color.texture < 0 || uvs[0] == uvs[1];
+    if (material.base_color.texture < 0) uvs[0] = uvs[1];
+    material.emissive.uv_set = shared ? 0 : 1;
+  }
+  return material;
+}
+
+}  // namespace
+
+ImportedMaterials import_materials(const Document& document, BufferViews& views, Scene& scene) {
+  ImportedMaterials imported;
+  TextureImporter textures(document, views, scene);
+  for (const tinygltf::Material& source : document.model.materials) {
+    UvSources uvs;
+    scene.materials.push_back(convert(document, source, textures, uvs));
+    imported.uvs.push_back(uvs);
+  }
+  // The specification's default is a rough white metal, which no author who left the material out has in mind.
+  Material fallback;
+  fallback.name = "no material";
+  imported.fallback = static_cast<int>(scene.materials.size());
+  scene.materials.push_back(fallback);
+  imported.uvs.emplace_back();
+  return imported;
+}
+
+}  // namespace probewalk::gltf
