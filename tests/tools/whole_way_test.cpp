@@ -1,0 +1,172 @@
+// The whole way in small: scene, bake, info, trace, render, walk, report; interruption; damage; repeatability.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <thread>
+
+#include "tools/run_probewalk.h"
+
+namespace probewalk::test {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+// A small pack of two rooms, baked once for all tests of this file.
+const fs::path& sample_pack() {
+  static const fs::path pack = [] {
+    const fs::path dir = fresh_folder("whole-way");
+    const RunResult scene = run_probewalk(dir, {"scene", "two-rooms", "-o", (dir / "two.glb").string()});
+    if (scene.exit_code != 0) throw std::runtime_error(scene.err);
+    const RunResult baked = run_probewalk(dir, {"bake", (dir / "two.glb").string(), "-o", (dir / "two.probes").string(), "--resolution", "128",
+                                                "--max-probes", "12", "--samples", "32", "--bounces", "2", "--json"});
+    if (baked.exit_code != 0) throw std::runtime_error(baked.err);
+    json::parse(baked.out);
+    return dir / "two.probes";
+  }();
+  return pack;
+}
+
+std::vector<std::pair<std::string, std::string>> pack_files(const fs::path& pack) {
+  std::vector<std::pair<std::string, std::string>> files;
+  for (const auto& entry : fs::recursive_directory_iterator(pack)) {
+    if (entry.is_regular_file()) files.emplace_back(fs::relative(entry.path(), pack).string(), read_text(entry.path()));
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+TEST(WholeWay, InfoTellsWhatTheContractPromises) {
+  const fs::path dir = fresh_folder("info");
+  const RunResult r = run_probewalk(dir, {"info", sample_pack().string(), "--json"});
+  ASSERT_EQ(r.exit_code, 0) << r.err;
+  const json info = json::parse(r.out);
+  for (const char* key : {"format_version", "scale", "bounds", "rooms", "features", "credits", "bytes_disk", "bytes_device"}) {
+    EXPECT_TRUE(info.contains(key)) << key;
+  }
+  ASSERT_EQ(info["rooms"].size(), 2u);
+  for (const json& room : info["rooms"]) {
+    for (const char* key : {"id", "name", "bounds", "probes", "portals", "levels"}) EXPECT_TRUE(room.contains(key)) << key;
+    ASSERT_FALSE(room["levels"].empty());
+    for (const char* key : {"geometry_size", "radiance_size", "bytes_disk", "bytes_device", "error"}) {
+      EXPECT_TRUE(room["levels"][0].contains(key)) << key;
+    }
+  }
+}
+
+TEST(WholeWay, VerifyFindsAFlippedByte) {
+  const fs::path dir = fresh_folder("verify");
+  const fs::path copy = dir / "copy.probes";
+  fs::copy(sample_pack(), copy, fs::copy_options::recursive);
+  ASSERT_EQ(run_probewalk(dir, {"info", copy.string(), "--verify"}).exit_code, 0);
+  const fs::path chunk = fs::directory_iterator(copy / "chunks")->path();
+  std::string bytes = read_text(chunk);
+  bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 4);
+  std::ofstream(chunk, std::ios::binary) << bytes;
+  const RunResult r = run_probewalk(dir, {"info", copy.string(), "--verify"});
+  EXPECT_EQ(r.exit_code, 1);
+  EXPECT_THAT(r.err + r.out, ::testing::HasSubstr(chunk.filename().string()));
+}
+
+TEST(WholeWay, TraceAnswersLineByLine) {
+  const fs::path dir = fresh_folder("trace");
+  std::ofstream(dir / "rays.txt") << "0 1.5 0 0 -2 0\n0 1.5 0 0 7 0\n";
+  const RunResult r = run_probewalk(dir, {"trace", sample_pack().string(), "--rays", (dir / "rays.txt").string()});
+  ASSERT_EQ(r.exit_code, 0) << r.err;
+  std::istringstream in(r.out);
+  std::string cls;
+  double t = 0, red = 0, green = 0, blue = 0;
+  int probe = -2;
+  unsigned lookups = 0;
+  ASSERT_TRUE(in >> cls >> t >> red >> green >> blue >> probe >> lookups);
+  EXPECT_EQ(cls, "hit");
+  EXPECT_NEAR(t, 1.5, 1e-3) << "the floor, whatever the direction's length";
+  EXPECT_GT(red + green + blue, 0.0);
+  EXPECT_GE(probe, 0);
+  EXPECT_GT(lookups, 0u);
+}
+
+TEST(WholeWay, TwoBakesAreByteIdentical) {
+  const fs::path dir = fresh_folder("twice");
+  const fs::path scene = sample_pack().parent_path() / "two.glb";
+  for (const char* threads : {"1", "2"}) {
+    const RunResult r = run_probewalk(dir, {"bake", scene.string(), "-o", (dir / (std::string("t") + threads + ".probes")).string(), "--resolution",
+                                            "32", "--max-probes", "6", "--samples", "16", "--bounces", "1", "-q", "--threads", threads});
+    ASSERT_EQ(r.exit_code, 0) << r.err;
+  }
+  EXPECT_EQ(pack_files(dir / "t1.probes"), pack_files(dir / "t2.probes"));
+}
+
+TEST(WholeWay, AnInterruptedBakeGoesOn) {
+  const fs::path dir = fresh_folder("interrupted");
+  const fs::path scene = sample_pack().parent_path() / "two.glb";
+  const fs::path pack = dir / "cut.probes";
+  const std::vector<std::string> command{"bake", scene.string(), "-o", pack.string(), "--resolution", "256", "--max-probes", "10", "--samples", "16", "--bounces", "1"};
+  const pid_t child = start_probewalk(dir, command);
+  std::this_thread::sleep_for(std::chrono::milliseconds(1500));
+  kill(child, SIGINT);
+  const RunResult first = finish_probewalk(child, dir);
+  if (first.exit_code == 0) GTEST_SKIP() << "the bake was done before it could be interrupted";
+  EXPECT_EQ(first.exit_code, 5) << first.err;
+  EXPECT_FALSE(fs::exists(pack / "pack.json"));
+  ASSERT_EQ(run_probewalk(dir, command).exit_code, 0);
+  const fs::path straight = dir / "straight.probes";
+  std::vector<std::string> again = command;
+  again[3] = straight.string();
+  ASSERT_EQ(run_probewalk(dir, again).exit_code, 0);
+  EXPECT_EQ(pack_files(pack), pack_files(straight));
+}
+
+TEST(WholeWay, AnOffscreenWalkLeavesAReport) {
+  const fs::path dir = fresh_folder("walk");
+  const RunResult r = run_probewalk(dir, {"walk", sample_pack().string(), "--display", "offscreen", "--frames", "40", "--eye-size", "80x60",
+                                          "--report", (dir / "report").string()});
+  ASSERT_EQ(r.exit_code, 0) << r.err;
+  const json summary = json::parse(read_text(dir / "report/summary.json"));
+  for (const char* key : {"schema", "command", "machine", "device", "runtime", "display", "eye_width", "eye_height", "views", "method", "period_ns",
+                          "frames", "warmup_frames", "missed", "discarded", "not_rendered", "stale_run_max", "within_budget_fraction",
+                          "clock_error_ns", "instrumentation_cost_fraction", "percentiles", "streaming"}) {
+    EXPECT_TRUE(summary.contains(key)) << key;
+  }
+  EXPECT_EQ(summary["frames"].get<int>() + summary["warmup_frames"].get<int>(), 40);
+  EXPECT_EQ(summary["display"], "offscreen");
+  for (const char* key : {"frame", "cpu_busy", "cpu_wait", "gpu_busy", "gpu_trace", "prediction_horizon", "deadline_margin", "pose_error_mm", "pose_error_deg"}) {
+    ASSERT_TRUE(summary["percentiles"].contains(key)) << key;
+    for (const char* p : {"n", "p50", "p90", "p95", "p99", "p999", "max"}) EXPECT_TRUE(summary["percentiles"][key].contains(p)) << key << p;
+  }
+  for (const char* key : {"bytes", "rooms_loaded", "coarse_frame_fraction", "need_to_resident_p50_ns", "need_to_resident_p99_ns",
+                          "frame_thread_p99_ns", "device_bytes_max", "device_budget_bytes"}) {
+    EXPECT_TRUE(summary["streaming"].contains(key)) << key;
+  }
+  const std::string csv = read_text(dir / "report/frames.csv");
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 41);
+  EXPECT_GT(read_text(dir / "report/index.html").size(), 10000u);
+  EXPECT_NO_THROW(json::parse(read_text(dir / "report/trace.json")));
+  // And the report can be made again from the run's own files.
+  EXPECT_EQ(run_probewalk(dir, {"report", (dir / "report").string(), "-o", (dir / "again").string()}).exit_code, 0);
+  EXPECT_TRUE(fs::exists(dir / "again/index.html"));
+}
+
+TEST(WholeWay, StillsAreRepeatableAndNotBlack) {
+  const fs::path dir = fresh_folder("stills");
+  std::string last;
+  for (const char* name : {"a.png", "b.png"}) {
+    const RunResult r = run_probewalk(dir, {"render", sample_pack().string(), "-o", (dir / name).string(), "--size", "160x120", "--stereo"});
+    ASSERT_EQ(r.exit_code, 0) << r.err;
+    const std::string bytes = read_text(dir / name);
+    EXPECT_GT(bytes.size(), 4000u) << "a flat picture compresses to less";
+    if (!last.empty()) {
+      EXPECT_EQ(bytes, last);
+    }
+    last = bytes;
+  }
+}
+
+}  // namespace
+}  // namespace probewalk::test
