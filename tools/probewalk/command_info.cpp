@@ -1,0 +1,214 @@
+// probewalk info: what a pack holds, for people or as JSON, and whether every byte of it is sound.
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "content/error.h"
+#include "content/pack/pack_io.h"
+#include "tools/probewalk/commands.h"
+
+namespace probewalk {
+
+namespace {
+
+using nlohmann::json;
+
+struct InfoOptions {
+  std::string pack;
+  bool verify = false;
+};
+
+double tour_length_m(const Manifest& manifest) {
+  double length_m = 0.0;
+  for (std::size_t k = 1; k < manifest.tour.size(); ++k) {
+    length_m += glm::length(manifest.tour[k].position_m - manifest.tour[k - 1].position_m);
+  }
+  return length_m;
+}
+
+// ---- JSON
+
+json to_json(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
+json to_json(const Bounds& b) { return {to_json(b.lower_m), to_json(b.upper_m)}; }
+json to_json(const Pose& pose) {
+  return {{"position_m", to_json(pose.position_m)}, {"yaw_rad", pose.yaw_rad}, {"pitch_rad", pose.pitch_rad}};
+}
+
+json to_json(const LevelEntry& level) {
+  return {{"geometry_size", level.geometry_size},
+          {"radiance_size", level.radiance_size},
+          {"bytes_disk", level.bytes_disk},
+          {"bytes_device", level.bytes_device},
+          {"error", level.error < 0.0 ? json(nullptr) : json(level.error)},
+          {"chunk", level.chunk}};
+}
+
+json portals_of(const Manifest& manifest, int room) {
+  json portals = json::array();
+  for (const Portal& portal : manifest.portals) {
+    if (portal.room_a != room && portal.room_b != room) continue;
+    json polygon = json::array();
+    for (const glm::dvec3& corner : portal.polygon) polygon.push_back(to_json(corner));
+    const int other = portal.room_a == room ? portal.room_b : portal.room_a;
+    portals.push_back({{"to", manifest.rooms[static_cast<std::size_t>(other)].id}, {"polygon", polygon}});
+  }
+  return portals;
+}
+
+json to_json(const Manifest& manifest) {
+  json rooms = json::array();
+  for (std::size_t k = 0; k < manifest.rooms.size(); ++k) {
+    const RoomEntry& room = manifest.rooms[k];
+    json levels = json::array();
+    for (const LevelEntry& level : room.levels) levels.push_back(to_json(level));
+    json positions = json::array();
+    for (std::uint32_t p = 0; p < room.probe_count; ++p) {
+      positions.push_back(to_json(manifest.probe_positions_m[room.first_probe + p]));
+    }
+    rooms.push_back({{"id", room.id},
+                     {"name", room.name},
+                     {"bounds", to_json(room.bounds)},
+                     {"probes", room.probe_count},
+                     {"probe_positions_m", positions},
+                     {"portals", portals_of(manifest, static_cast<int>(k))},
+                     {"levels", levels}});
+  }
+  return {{"format_version", manifest.format_version},
+          {"producer", manifest.producer},
+          {"scene", {{"name", manifest.scene_name}, {"hash", manifest.scene_hash}}},
+          {"options_hash", manifest.options_hash},
+          {"scale", manifest.scale},
+          {"scale_statement", manifest.scale_statement},
+          {"light_statement", manifest.light_statement},
+          {"bounds", to_json(manifest.bounds)},
+          {"rooms", rooms},
+          {"probes", manifest.probe_positions_m.size()},
+          {"grid",
+           {{"origin_m", to_json(manifest.grid.origin_m)},
+            {"spacing_m", to_json(manifest.grid.spacing_m)},
+            {"dims", {manifest.grid.dims.x, manifest.grid.dims.y, manifest.grid.dims.z}}}},
+          {"floor", {{"cell_m", manifest.floor.cell_m}, {"nodes", manifest.floor.nodes.size()}}},
+          {"features", manifest.features},
+          {"credits", manifest.credits},
+          {"radiance_scale", manifest.radiance_scale},
+          {"exposure_ev", manifest.exposure_ev},
+          {"start", to_json(manifest.start)},
+          {"tour", {{"poses", manifest.tour.size()}, {"length_m", tour_length_m(manifest)}}},
+          {"warnings", manifest.warnings},
+          {"bytes_disk", manifest.bytes_disk()},
+          {"bytes_device", manifest.bytes_device()}};
+}
+
+// ---- text
+
+// Names and credits come from anyone: no control character of theirs reaches the terminal. Lines become one.
+std::string printable(const std::string& text) {
+  std::string out;
+  for (std::size_t k = 0; k < text.size(); ++k) {
+    const auto byte = static_cast<unsigned char>(text[k]);
+    const bool second_set = byte == 0xc2 && k + 1 < text.size() && static_cast<unsigned char>(text[k + 1]) < 0xa0;
+    if (second_set) ++k;
+    if (second_set || byte < 0x20 || byte == 0x7f) {
+      if (!out.empty() && out.back() != ' ') out.push_back(' ');
+    } else {
+      out.push_back(text[k]);
+    }
+  }
+  return out;
+}
+
+std::string size_text(std::uint64_t bytes) {
+  if (bytes < 1024) return fmt::format("{} B", bytes);
+  if (bytes < 1024 * 1024) return fmt::format("{:.1f} KiB", static_cast<double>(bytes) / 1024.0);
+  return fmt::format("{:.1f} MiB", static_cast<double>(bytes) / (1024.0 * 1024.0));
+}
+
+std::string point_text(const glm::dvec3& p) { return fmt::format("{:.2f}, {:.2f}, {:.2f}", p.x, p.y, p.z); }
+
+std::string list_text(const std::vector<std::string>& items, const char* none) {
+  return items.empty() ? none : fmt::format("{}", fmt::join(items, ", "));
+}
+
+void line(const char* label, const std::string& text) { fmt::print("{:<10} {}\n", label, text); }
+
+void print_room(const Manifest& manifest, std::size_t index) {
+  const RoomEntry& room = manifest.rooms[index];
+  std::vector<std::string> neighbours;
+  for (const Portal& portal : manifest.portals) {
+    const auto a = static_cast<std::size_t>(portal.room_a), b = static_cast<std::size_t>(portal.room_b);
+    if (a == index) neighbours.push_back(manifest.rooms[b].id);
+    if (b == index) neighbours.push_back(manifest.rooms[a].id);
+  }
+  const glm::dvec3 size_m = room.bounds.upper_m - room.bounds.lower_m;
+  fmt::print("  {:<20} {}: {:.1f} x {:.1f} x {:.1f} m, {} probe{}, portals to {}\n", room.id, printable(room.name),
+             size_m.x, size_m.y, size_m.z, room.probe_count, room.probe_count == 1 ? "" : "s",
+             list_text(neighbours, "no other room"));
+  for (std::size_t k = 0; k < room.levels.size(); ++k) {
+    const LevelEntry& level = room.levels[k];
+    fmt::print("    level {}  geometry {}\u00b2, radiance {}\u00b2, {} on disk, {} on the device, error {}\n", k,
+               level.geometry_size, level.radiance_size, size_text(level.bytes_disk), size_text(level.bytes_device),
+               level.error < 0.0 ? "not measured" : fmt::format("{:.3g}", level.error));
+  }
+}
+
+void print(const Pack& pack) {
+  const Manifest& m = pack.manifest();
+  const glm::dvec3 size_m = m.bounds.upper_m - m.bounds.lower_m;
+  line("pack", fmt::format("{} (format {}, by {})", pack.path().string(), m.format_version, printable(m.producer)));
+  line("scene", printable(m.scene_name));
+  line("credits", m.credits.empty() ? "none stated" : printable(m.credits));
+  line("scale", fmt::format("{} ({})", m.scale, printable(m.scale_statement)));
+  line("light", printable(m.light_statement));
+  line("features", list_text(m.features, "none"));
+  line("bounds", fmt::format("{:.2f} x {:.2f} x {:.2f} m, from ({}) to ({})", size_m.x, size_m.y, size_m.z,
+                             point_text(m.bounds.lower_m), point_text(m.bounds.upper_m)));
+  line("probes", fmt::format("{}, on a grid of {} x {} x {}, every {:.2f} x {:.2f} x {:.2f} m", m.probe_positions_m.size(),
+                             m.grid.dims.x, m.grid.dims.y, m.grid.dims.z, m.grid.spacing_m.x, m.grid.spacing_m.y,
+                             m.grid.spacing_m.z));
+  line("bytes", fmt::format("{} on disk, {} on the device with every level resident", size_text(m.bytes_disk()),
+                            size_text(m.bytes_device())));
+  line("exposure", fmt::format("{:.2f} EV", m.exposure_ev));
+  line("start", fmt::format("({}), yaw {:.0f} degrees", point_text(m.start.position_m), glm::degrees(m.start.yaw_rad)));
+  line("tour", fmt::format("{:.1f} m, {} poses", tour_length_m(m), m.tour.size()));
+  line("rooms", fmt::format("{}, joined by {} portal{}", m.rooms.size(), m.portals.size(), m.portals.size() == 1 ? "" : "s"));
+  for (std::size_t k = 0; k < m.rooms.size(); ++k) print_room(m, k);
+  for (const std::string& warning : m.warnings) line("warning", printable(warning));
+}
+
+void run_info(const InfoOptions& options, const CommonOptions& common) {
+  const Pack pack = Pack::open(options.pack);
+  std::vector<std::string> damage;
+  if (options.verify) damage = pack.verify(*make_progress(common));
+  if (common.json) {
+    json document = to_json(pack.manifest());
+    if (options.verify) document["damaged"] = damage;
+    fmt::print("{}\n", document.dump(2, ' ', false, json::error_handler_t::replace));
+  } else {
+    print(pack);
+    for (const std::string& chunk : damage) line("damaged", printable(chunk));
+    if (options.verify && damage.empty()) line("verified", "every byte was read and is sound");
+  }
+  if (!damage.empty()) {
+    std::fflush(stdout);
+    throw CheckFailed(fmt::format("{}: {} damaged chunk{}; bake the pack again or copy it anew", options.pack,
+                                  damage.size(), damage.size() == 1 ? "" : "s"));
+  }
+}
+
+}  // namespace
+
+void add_info_command(CLI::App& app, CommonOptions& common) {
+  CLI::App* command = app.add_subcommand("info", "Show what a pack holds: rooms, probes, levels, bytes, credits");
+  command->footer(
+      "With --verify every byte is read and decoded; the exit code is 1 when a chunk is damaged, and each damaged chunk\n"
+      "is named with its room and level. A manifest that cannot be read is exit code 3.\n\n"
+      "  probewalk info house.probes --verify");
+  auto options = std::make_shared<InfoOptions>();
+  command->add_option("pack", options->pack, "The pack (a folder NAME.probes)")->required();
+  command->add_flag("--verify", options->verify, "Read, check and decode every byte");
+  add_common_options(*command, common);
+  command->callback([options, &common] { run_info(*options, common); });
+}
+
+}  // namespace probewalk
