@@ -16,6 +16,7 @@
 #include "content/probe/tracer_f32.h"
 #include "content/probe/tracer_f64.h"
 #include "content/scene/ray_scene.h"
+#include "support/brute_compare.h"
 #include "support/low_discrepancy.h"
 #include "support/test_scenes.h"
 
@@ -76,31 +77,10 @@ std::vector<HardCase> hard_cases() {
   };
 }
 
-bool same_class(int cls, BruteAnswer::Class brute) {
-  return (cls == kClassHit && brute == BruteAnswer::Class::kHit) || (cls == kClassMiss && brute == BruteAnswer::Class::kMiss) ||
-         (cls == kClassUnknown && brute == BruteAnswer::Class::kUnknown) || (cls == 3 && brute == BruteAnswer::Class::kBehind);
-}
-
 struct Tally {
   int rays = 0, ties = 0, disagreements = 0;
   double error_max = 0.0;
 };
-
-// Same class, and the same distance but for conditioning.
-bool same_answer(int cls, double t, const BruteAnswer& expected) {
-  return same_class(cls, expected.cls) && (cls == kClassMiss || std::abs(t - expected.t) < 1e-2 * std::max(1e-3, expected.t));
-}
-
-// A difference is a tie where brute force gives the tracer's answer for a ray `tie` metres beside: there the answer jumps
-// (an edge shared by two surfaces, a wall's rim), and the sides of the jump are told apart by rounding alone.
-bool is_tie(const BruteForceProbe& brute, const ProbeRay& ray, int cls, double t, double tie) {
-  for (int k = 0; k < 32; ++k) {
-    const glm::dvec3 x = glm::dvec3(ray.x) + tie * test::hammersley_direction(k, 32);
-    const glm::dvec3 d = glm::dvec3(ray.d) + tie * test::hammersley_direction((k * 13) % 32, 32);
-    if (same_answer(cls, t, brute.trace(x, d))) return true;
-  }
-  return false;
-}
 
 template <class Walk>
 Tally compare(const Probe& probe, const BruteForceProbe& brute, const HardCase& hard, int rays, double tie, const Walk& walk) {
@@ -111,9 +91,9 @@ Tally compare(const Probe& probe, const BruteForceProbe& brute, const HardCase& 
     const auto [cls, t] = walk(probe.record, ray);
     const BruteAnswer expected = brute.trace(glm::dvec3(ray.x), glm::dvec3(ray.d));
     ++tally.rays;
-    if (same_answer(cls, t, expected)) {
+    if (test::same_answer(cls, t, expected)) {
       if (cls != kClassMiss) tally.error_max = std::max(tally.error_max, std::abs(t - expected.t) / std::max(1e-3, expected.t));
-    } else if (is_tie(brute, ray, cls, t, tie)) {
+    } else if (test::is_tie(brute, glm::dvec3(ray.x), glm::dvec3(ray.d), 0.0, cls, t, tie)) {
       ++tally.ties;
     } else {
       ++tally.disagreements;
