@@ -1,0 +1,178 @@
+#include "content/scene/procedural/procedural.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <glm/glm.hpp>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <span>
+
+#include "content/error.h"
+
+namespace probewalk {
+namespace {
+
+using Json = nlohmann::json;
+
+std::uint32_t word_at(std::span<const std::byte> bytes, std::size_t offset) {
+  std::uint32_t word = 0;
+  std::memcpy(&word, bytes.data() + offset, sizeof word);
+  return word;
+}
+
+// The two chunks of a GLB, its framing checked on the way.
+struct Glb {
+  explicit Glb(std::vector<std::byte> file) : bytes(std::move(file)) {
+    EXPECT_EQ(word_at(bytes, 0), 0x46546C67u);
+    EXPECT_EQ(word_at(bytes, 4), 2u);
+    EXPECT_EQ(word_at(bytes, 8), bytes.size());
+    const std::size_t text = word_at(bytes, 12);
+    EXPECT_EQ(text % 4, 0u);
+    EXPECT_EQ(word_at(bytes, 16), 0x4E4F534Au);
+    root = Json::parse(reinterpret_cast<const char*>(bytes.data()) + 20, reinterpret_cast<const char*>(bytes.data()) + 20 + text);
+    EXPECT_EQ(word_at(bytes, 24 + text), 0x004E4942u);
+    EXPECT_EQ(28 + text + word_at(bytes, 20 + text), bytes.size());
+    binary = std::span<const std::byte>(bytes).subspan(28 + text);
+  }
+
+  std::size_t offset_of(const Json& accessor) const {
+    const Json& view = root["bufferViews"][accessor["bufferView"].get<std::size_t>()];
+    return view["byteOffset"].get<std::size_t>() + accessor["byteOffset"].get<std::size_t>();
+  }
+  std::size_t triangles() const {
+    std::size_t count = 0;
+    for (const Json& mesh : root["meshes"])
+      for (const Json& primitive : mesh["primitives"]) count += root["accessors"][primitive["indices"].get<std::size_t>()]["count"].get<std::size_t>() / 3;
+    return count;
+  }
+  // Room boxes by name: lower x, y, z, upper x, y, z.
+  std::map<std::string, std::array<double, 6>> rooms() const {
+    std::map<std::string, std::array<double, 6>> found;
+    for (const Json& node : root["nodes"]) {
+      if (!node.contains("extras")) continue;
+      const Json &lower = node["extras"]["probewalk_room_min"], &upper = node["extras"]["probewalk_room_max"];
+      found[node["extras"]["probewalk_room"]] = {lower[0], lower[1], lower[2], upper[0], upper[1], upper[2]};
+    }
+    return found;
+  }
+
+  std::vector<std::byte> bytes;
+  Json root;
+  std::span<const std::byte> binary;
+};
+
+class EveryProceduralScene : public testing::TestWithParam<std::string> {};
+
+TEST_P(EveryProceduralScene, IsTheSameBytesTwice) { EXPECT_EQ(make_procedural_glb(GetParam()), make_procedural_glb(GetParam())); }
+
+TEST_P(EveryProceduralScene, HasAccessorsInsideTheirBuffersAndTrueBounds) {
+  const Glb glb(make_procedural_glb(GetParam()));
+  const std::size_t buffer_bytes = glb.root["buffers"][0]["byteLength"];
+  EXPECT_EQ(buffer_bytes, glb.binary.size());
+  for (const Json& view : glb.root["bufferViews"]) {
+    EXPECT_EQ(view["byteOffset"].get<std::size_t>() % 4, 0u);
+    EXPECT_LE(view["byteOffset"].get<std::size_t>() + view["byteLength"].get<std::size_t>(), buffer_bytes);
+  }
+  for (const Json& mesh : glb.root["meshes"]) {
+    for (const Json& primitive : mesh["primitives"]) {
+      const Json& position = glb.root["accessors"][primitive["attributes"]["POSITION"].get<std::size_t>()];
+      const Json& normal = glb.root["accessors"][primitive["attributes"]["NORMAL"].get<std::size_t>()];
+      const Json& index = glb.root["accessors"][primitive["indices"].get<std::size_t>()];
+      const std::size_t count = position["count"];
+      ASSERT_EQ(normal["count"], count);
+      glm::vec3 lower{1e30f}, upper{-1e30f};
+      for (std::size_t i = 0; i < count; ++i) {
+        glm::vec3 p, n;
+        std::memcpy(&p, glb.binary.data() + glb.offset_of(position) + i * sizeof p, sizeof p);
+        std::memcpy(&n, glb.binary.data() + glb.offset_of(normal) + i * sizeof n, sizeof n);
+        lower = glm::min(lower, p), upper = glm::max(upper, p);
+        ASSERT_NEAR(glm::length(n), 1.0f, 1e-4f) << mesh["name"];
+      }
+      for (int axis = 0; axis < 3; ++axis) {
+        EXPECT_EQ(position["min"][axis].get<float>(), lower[axis]) << mesh["name"];
+        EXPECT_EQ(position["max"][axis].get<float>(), upper[axis]) << mesh["name"];
+      }
+      const std::size_t width = index["componentType"] == 5123 ? 2 : 4;
+      for (std::size_t i = 0; i < index["count"].get<std::size_t>(); ++i) {
+        std::uint32_t value = 0;
+        std::memcpy(&value, glb.binary.data() + glb.offset_of(index) + i * width, width);
+        ASSERT_LT(value, count) << mesh["name"];
+      }
+    }
+  }
+}
+
+TEST_P(EveryProceduralScene, NamesItsNodesOnceAndItsExtensions) {
+  const Glb glb(make_procedural_glb(GetParam()));
+  std::set<std::string> names;
+  for (const Json& node : glb.root["nodes"]) EXPECT_TRUE(names.insert(node["name"]).second) << node["name"];
+  const std::string text = glb.root.dump();
+  for (const std::string extension : {"KHR_lights_punctual", "KHR_materials_emissive_strength"}) {
+    const Json used = glb.root.value("extensionsUsed", Json::array());
+    const bool listed = std::find(used.begin(), used.end(), extension) != used.end();
+    EXPECT_EQ(listed, text.find("\"" + extension + "\":") != std::string::npos) << extension;
+  }
+}
+
+TEST_P(EveryProceduralScene, StartsInsideOneOfItsRooms) {
+  const Glb glb(make_procedural_glb(GetParam()));
+  const Json& start = glb.root["scenes"][0]["extras"]["probewalk_start"];
+  bool inside = false;
+  for (const auto& [name, box] : glb.rooms())
+    inside |= start[0] >= box[0] && start[0] <= box[3] && start[1] >= box[1] && start[1] <= box[4] && start[2] >= box[2] && start[2] <= box[5];
+  EXPECT_TRUE(inside);
+}
+
+std::vector<std::string> scene_names() {
+  std::vector<std::string> names;
+  for (const ProceduralSceneInfo& scene : procedural_scenes()) names.push_back(scene.name);
+  return names;
+}
+INSTANTIATE_TEST_SUITE_P(Procedural, EveryProceduralScene, testing::ValuesIn(scene_names()), [](const auto& info) {
+  std::string name = info.param;
+  std::replace(name.begin(), name.end(), '-', '_');
+  return name;
+});
+
+TEST(ProceduralHouse, HasItsRoomsOnTwoFloorsAndACourtyard) {
+  const auto rooms = Glb(make_procedural_glb("house")).rooms();
+  int ground = 0, upper = 0;
+  for (const auto& [name, box] : rooms) (box[1] > 2.0 ? upper : ground) += name != "Courtyard" && name != "Stairwell";
+  EXPECT_GE(ground, 4);
+  EXPECT_GE(upper, 4);
+  EXPECT_TRUE(rooms.contains("Courtyard"));
+}
+
+TEST(ProceduralHouse, KeepsItsSize) {
+  const Glb glb(make_procedural_glb("house"));
+  EXPECT_GE(glb.triangles(), 60'000u);
+  EXPECT_LE(glb.triangles(), 150'000u);
+  EXPECT_LT(glb.bytes.size(), 12u << 20);
+}
+
+TEST(ProceduralHouse, HasEveryKindOfLight) {
+  const Glb glb(make_procedural_glb("house"));
+  std::set<std::string> kinds;
+  for (const Json& light : glb.root["extensions"]["KHR_lights_punctual"]["lights"]) kinds.insert(light["type"]);
+  EXPECT_EQ(kinds, (std::set<std::string>{"directional", "point", "spot"}));
+  EXPECT_TRUE(glb.root["scenes"][0]["extras"].contains("probewalk_sky"));
+}
+
+TEST(ProceduralScenes, BoxRoomIsSmall) { EXPECT_LE(Glb(make_procedural_glb("box-room")).triangles(), 100u); }
+
+TEST(ProceduralScenes, AnUnknownNameIsRefusedWithTheKnownOnes) {
+  try {
+    make_procedural_glb("palace");
+    FAIL() << "not refused";
+  } catch (const BadUsage& error) {
+    EXPECT_NE(std::string(error.what()).find("palace"), std::string::npos);
+    EXPECT_NE(std::string(error.what()).find("house"), std::string::npos);
+  }
+}
+
+}  // namespace
+}  // namespace probewalk
