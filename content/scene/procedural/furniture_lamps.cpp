@@ -68,7 +68,7 @@ void draw_reading_spot(Brush brush, const Palette& p, double candela) {
   head.lathe(p.black_metal, {0, -0.08, 0}, {{0.085, 0}, {0.07, 0.05}, {0.025, 0.10}, {0, 0.105}}, 18);
   head.lathe(p.lamp_globe, {0, -0.06, 0}, {{0, 0}, {0.05, 0}}, 14);
   ModelLight light;
-  light.name = "Reading spot";
+  light.name = "Reading spot " + std::to_string(brush.model().lights.size() + 1);
   light.kind = ModelLight::Kind::kSpot;
   light.position_m = head.world({0, -0.085, 0});
   light.direction = {0, -1, 0};
