@@ -26,6 +26,7 @@ struct BakeOptions {
   std::optional<glm::dvec3> start_m;
   std::string only_room;           // bake this room's chunks anew, keep the rest of an existing pack
   std::string isa;
+  std::string producer = "probewalk";  // as the manifest names it
 };
 
 struct BakeReport {

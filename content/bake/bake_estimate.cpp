@@ -1,0 +1,59 @@
+#include "content/bake/bake_estimate.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+
+#include "content/bake/patterns.h"
+
+namespace probewalk {
+namespace {
+
+constexpr int kTimedRays = 20000;
+// Averages over furnished rooms: what a texel and a cache point cost, in incoherent rays, shading included.
+constexpr double kRaysPerTexel = 12.0;
+constexpr double kRaysPerVertex = 1.5;
+constexpr double kRaysPerGather = 1.6;
+constexpr double kGathersPerSample = 10.0;  // over the bounces: the first ones gather more
+constexpr double kPointsPerSquare = 1.3;    // of the spacing, both sides
+constexpr double kMostPoints = 300000.0;
+constexpr double kBytesPerTexel = 2.2;
+constexpr double kBytesPerVertex = 1.1;
+
+double seconds_per_ray(const RayScene& rays, glm::dvec3 position_m) {
+  std::atomic<std::uint32_t> hits{0};
+  const auto start = std::chrono::steady_clock::now();
+  tbb::parallel_for(0, kTimedRays, [&](int k) {
+    hits += rays.closest(glm::vec3(position_m), sphere_direction(hammersley(k, kTimedRays))).hit;
+  });
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() / kTimedRays;
+}
+
+}  // namespace
+
+BakeEstimate estimate_bake(const Scene& scene, const RayScene& rays, const LightOptions& light,
+                           const std::vector<LevelSize>& levels, std::uint64_t probes, glm::dvec3 position_m) {
+  BakeEstimate estimate;
+  double rays_needed = 0.0, bytes = 0.0;
+  for (const LevelSize& size : levels) {
+    const double texels = double(probes) * size.radiance * size.radiance;
+    const double vertices = double(probes) * size.geometry * size.geometry;
+    estimate.texels += static_cast<std::uint64_t>(texels);
+    rays_needed += kRaysPerTexel * texels + kRaysPerVertex * vertices;
+    bytes += kBytesPerTexel * texels + kBytesPerVertex * vertices;
+  }
+  double area_m2 = 0.0;
+  for (const glm::uvec3& t : scene.triangles) {
+    const glm::vec3 a = scene.positions_m[t.x];
+    area_m2 += 0.5 * glm::length(glm::cross(scene.positions_m[t.y] - a, scene.positions_m[t.z] - a));
+  }
+  const double points = std::min(kPointsPerSquare * area_m2 / (light.cache_spacing_m * light.cache_spacing_m), kMostPoints);
+  rays_needed += points * light.samples * kGathersPerSample * kRaysPerGather;
+  estimate.seconds = rays_needed * seconds_per_ray(rays, position_m);
+  estimate.bytes_disk = static_cast<std::uint64_t>(bytes);
+  return estimate;
+}
+
+}  // namespace probewalk

@@ -1,0 +1,296 @@
+#include "content/bake/bake_job.h"
+
+#include <fmt/format.h>
+#include <tbb/global_control.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <span>
+#include <vector>
+
+#include "content/bake/bake_estimate.h"
+#include "content/bake/bake_probe.h"
+#include "content/bake/bake_state.h"
+#include "content/bake/exposure.h"
+#include "content/error.h"
+#include "content/pack/pack_format.h"
+#include "content/pack/pack_io.h"
+#include "content/probe/device_probe.h"
+#include "content/scene/space.h"
+
+namespace probewalk {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+// Probes stand on this lattice, so that their offsets from a room's origin are exact in float, in the pack and on the
+// device, and are the very positions that rays were cast from.
+constexpr double kPositionSteps_per_m = 4096.0;
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+void check_options(const BakeOptions& options) {
+  const auto check_side = [](int side, const char* name) {
+    const bool power = side > 0 && (side & (side - 1)) == 0;
+    if (!power || side < static_cast<int>(PackLimits::kMinMapSide) || side > static_cast<int>(PackLimits::kMapSide)) {
+      throw BadUsage(fmt::format("{} {} is not a power of two from {} to {}; 512 is the default", name, side,
+                                 PackLimits::kMinMapSide, PackLimits::kMapSide));
+    }
+  };
+  check_side(options.resolution, "--resolution");
+  if (options.radiance_resolution != 0) check_side(options.radiance_resolution, "--radiance-resolution");
+  check_side(options.coarse_resolution, "the coarse level's resolution");
+  if (options.pack.extension() != ".probes") {
+    throw BadUsage(fmt::format("a pack's name ends in .probes, this one does not: {}", options.pack.string()));
+  }
+  std::error_code error;
+  if (fs::exists(options.pack, error) && !fs::is_directory(options.pack, error)) {
+    throw BadUsage(fmt::format("{} is a file, a pack is a folder; choose another name", options.pack.string()));
+  }
+}
+
+// Coarse to fine. A fine level no finer than the coarse one is the only one.
+std::vector<LevelSize> level_sizes(const BakeOptions& options) {
+  const LevelSize fine{options.resolution, options.radiance_resolution ? options.radiance_resolution : options.resolution};
+  const LevelSize coarse{std::min(options.coarse_resolution, fine.geometry), std::min(options.coarse_resolution, fine.radiance)};
+  if (coarse.geometry == fine.geometry && coarse.radiance == fine.radiance) return {fine};
+  return {coarse, fine};
+}
+
+// Everything besides the scene's own bytes that decides what is baked. Threads do not.
+std::string hash_options(const BakeOptions& options, const Scene& scene) {
+  const glm::dvec3 start = options.start_m.value_or(glm::dvec3(0.0));
+  const std::string text = fmt::format(
+      "{} format {} resolution {} radiance {} coarse {} spacing {:a} probes {} samples {} bounces {} cache {:a} seed {} "
+      "scale {:a} recentre {} start {} {:a} {:a} {:a} isa '{}'",
+      options.producer, kPackFormatVersion, options.resolution, options.radiance_resolution, options.coarse_resolution,
+      options.placement.spacing_m, options.placement.max_probes, options.light.samples, options.light.bounces,
+      options.light.cache_spacing_m, options.light.seed, scene.scale, options.load.recentre, options.start_m.has_value(),
+      start.x, start.y, start.z, options.isa);
+  return content_hash(std::as_bytes(std::span(text)));
+}
+
+glm::dvec3 on_lattice(glm::dvec3 p) { return glm::round(p * kPositionSteps_per_m) / kPositionSteps_per_m; }
+
+class BakeJob {
+ public:
+  BakeJob(const BakeOptions& options, Progress& progress)
+      : options_(options), progress_(progress), scene_(load_scene(options.scene_file, options.load)),
+        rays_(scene_, options.isa), levels_(level_sizes(options)) {}
+
+  BakeReport run() {
+    const auto start = std::chrono::steady_clock::now();
+    describe_scene();
+    find_places();
+    const std::vector<bool> wanted = wanted_rooms();
+    note_estimate(wanted);
+    const LightField light(scene_, rays_, options_.light, progress_);
+    const Exposure exposure = choose_exposure(light, tour_);
+    manifest_.radiance_scale = exposure.radiance_scale;
+    manifest_.exposure_ev = exposure.exposure_ev;
+    bake_rooms(light, wanted);
+    report_.rays += light.rays_cast();
+    report_.seconds = seconds_since(start);
+    report_.rooms = manifest_.rooms.size();
+    report_.probes = manifest_.probe_positions_m.size();
+    report_.levels = levels_.size();
+    report_.bytes_disk = manifest_.bytes_disk();
+    report_.bytes_device = manifest_.bytes_device();
+    return report_;
+  }
+
+ private:
+  void describe_scene() {
+    manifest_.producer = options_.producer;
+    manifest_.scene_name = scene_.name;
+    manifest_.scene_hash = scene_.content_hash;
+    manifest_.options_hash = hash_options(options_, scene_);
+    manifest_.scale = scene_.scale;
+    manifest_.scale_statement = scene_.scale_statement;
+    manifest_.light_statement = scene_.light_statement;
+    manifest_.credits = scene_.credits;
+    manifest_.bounds = scene_.bounds;
+    manifest_.warnings = scene_.warnings;
+    for (const std::string& line : {scene_.scale_statement, scene_.light_statement}) {
+      if (!line.empty()) progress_.note(line);
+    }
+    for (const std::string& warning : scene_.warnings) progress_.note("warning: " + warning);
+  }
+
+  void find_places() {
+    SpaceOptions space_options;
+    space_options.start_m = options_.start_m;
+    Space space = find_space(scene_, rays_, space_options, progress_);
+    Placement placement = place_probes(scene_, rays_, space, options_.placement);
+    if (placement.sites.empty()) {
+      throw BadInput(fmt::format("{}: there is no place for a probe; give --start x,y,z inside the scene or --scale",
+                                 options_.scene_file.string()));
+    }
+    if (!placement.statement.empty()) progress_.note(placement.statement);
+    for (const std::string& warning : space.warnings) {
+      progress_.note("warning: " + warning);
+      manifest_.warnings.push_back(warning);
+    }
+    for (std::size_t k = 0; k < space.rooms.size(); ++k) {
+      const RoomRegion& region = space.rooms[k];
+      RoomEntry room;
+      room.id = region.id;
+      room.name = region.name;
+      room.bounds = region.bounds;
+      room.origin_m = glm::round(0.5 * (region.bounds.lower_m + region.bounds.upper_m));
+      room.first_probe = static_cast<std::uint32_t>(manifest_.probe_positions_m.size());
+      for (const ProbeSite& site : placement.sites) {
+        if (site.room == static_cast<int>(k)) manifest_.probe_positions_m.push_back(on_lattice(site.position_m));
+      }
+      room.probe_count = static_cast<std::uint32_t>(manifest_.probe_positions_m.size()) - room.first_probe;
+      manifest_.rooms.push_back(std::move(room));
+    }
+    manifest_.grid = std::move(placement.grid);
+    manifest_.portals = std::move(space.portals);
+    manifest_.floor = std::move(space.floor);
+    manifest_.start = space.start;
+    tour_ = space.tour;
+    if (tour_.empty()) tour_.push_back(space.start);
+    manifest_.tour = tour_;
+  }
+
+  // By room: whether it is baked. With --only-room the other rooms' chunks come from the pack that is there.
+  std::vector<bool> wanted_rooms() {
+    std::vector<bool> wanted(manifest_.rooms.size(), true);
+    if (options_.only_room.empty()) return wanted;
+    const auto room = std::find_if(manifest_.rooms.begin(), manifest_.rooms.end(),
+                                   [&](const RoomEntry& r) { return r.id == options_.only_room; });
+    if (room == manifest_.rooms.end()) {
+      std::vector<std::string> ids;
+      for (const RoomEntry& r : manifest_.rooms) ids.push_back(r.id);
+      throw BadUsage(fmt::format("--only-room {}: there is no such room; the scene's rooms are {}", options_.only_room,
+                                 fmt::join(ids, ", ")));
+    }
+    const Manifest old = Pack::open(options_.pack).manifest();
+    if (old.scene_hash != manifest_.scene_hash || old.options_hash != manifest_.options_hash ||
+        old.probe_positions_m != manifest_.probe_positions_m || old.rooms.size() != manifest_.rooms.size()) {
+      throw BadUsage(fmt::format("--only-room {}: {} was baked from another scene or with other options, its other rooms "
+                                 "would not fit; bake all rooms", options_.only_room, options_.pack.string()));
+    }
+    for (std::size_t k = 0; k < wanted.size(); ++k) {
+      wanted[k] = manifest_.rooms[k].id == options_.only_room;
+      if (!wanted[k]) manifest_.rooms[k].levels = old.rooms[k].levels;
+    }
+    manifest_.features = old.features;
+    return wanted;
+  }
+
+  std::uint64_t probes_in(const std::vector<bool>& wanted) const {
+    std::uint64_t count = 0;
+    for (std::size_t k = 0; k < wanted.size(); ++k) count += wanted[k] ? manifest_.rooms[k].probe_count : 0;
+    return count;
+  }
+
+  void note_estimate(const std::vector<bool>& wanted) {
+    const BakeEstimate estimate = estimate_bake(scene_, rays_, options_.light, levels_, probes_in(wanted),
+                                                manifest_.probe_positions_m.front());
+    progress_.note(fmt::format("{} probes in {} rooms, {:.1f} million texels: about {:.0f} s and {:.0f} MiB on disk",
+                               probes_in(wanted), std::count(wanted.begin(), wanted.end(), true),
+                               static_cast<double>(estimate.texels) * 1e-6, estimate.seconds,
+                               static_cast<double>(estimate.bytes_disk) / (1 << 20)));
+  }
+
+  void bake_rooms(const LightField& light, const std::vector<bool>& wanted) {
+    const std::string key_text = manifest_.scene_hash + manifest_.options_hash;
+    const BakeState state(options_.pack.string() + ".partial", content_hash(std::as_bytes(std::span(key_text))));
+    PackWriter writer(options_.pack);
+    std::uint64_t texels = 0;
+    for (const LevelSize& size : levels_) texels += probes_in(wanted) * size.radiance * size.radiance;
+    progress_.begin("probes", texels, "texels");
+    for (std::size_t k = 0; k < manifest_.rooms.size(); ++k) {
+      RoomEntry& room = manifest_.rooms[k];
+      if (!wanted[k] || room.probe_count == 0) continue;
+      for (const LevelSize& size : levels_) room.levels.push_back(bake_level(light, state, room, size, writer));
+    }
+    report_.texels = done_texels_;
+    if (baked_texels_ > 0) report_.seconds_per_million_texels = baking_seconds_ * 1e6 / static_cast<double>(baked_texels_);
+    if (all_cells_ > 0) report_.connected_fraction = 1.0 - static_cast<double>(cut_cells_) / static_cast<double>(all_cells_);
+    if (sees_sky_) add_feature("sky");
+    if (cut_cells_ > 0) add_feature("cuts");
+    writer.finish(manifest_);
+    state.remove();
+  }
+
+  LevelEntry bake_level(const LightField& light, const BakeState& state, const RoomEntry& room, LevelSize size,
+                        PackWriter& writer) {
+    RoomLevel level;
+    level.origin_m = room.origin_m;
+    LevelEntry entry;
+    entry.geometry_size = static_cast<std::uint32_t>(size.geometry);
+    entry.radiance_size = static_cast<std::uint32_t>(size.radiance);
+    for (std::uint32_t k = 0; k < room.probe_count; ++k) {
+      stop_if_asked();
+      level.probes.push_back(bake_probe(light, state, room.first_probe + k, size));
+      const ProbeMap& probe = level.probes.back();
+      const std::size_t cut = count_cut_cells(probe.geometry);
+      cut_cells_ += cut;
+      all_cells_ += std::uint64_t(size.geometry) * size.geometry;
+      sees_sky_ |= std::find(probe.geometry.w.begin(), probe.geometry.w.end(), 0.0f) != probe.geometry.w.end();
+      entry.bytes_device += device_probe_bytes(size.geometry, size.radiance, cut);
+      done_texels_ += std::uint64_t(size.radiance) * size.radiance;
+      progress_.advance(done_texels_);
+    }
+    const std::vector<std::byte> chunk = encode_chunk(level);
+    entry.bytes_disk = chunk.size();
+    entry.chunk = writer.add_chunk(chunk);
+    return entry;
+  }
+
+  ProbeMap bake_probe(const LightField& light, const BakeState& state, std::uint32_t index, LevelSize size) {
+    const glm::dvec3 position = manifest_.probe_positions_m[index];
+    if (std::optional<ProbeMap> kept = state.load(index, position, size.geometry, size.radiance)) return std::move(*kept);
+    const auto start = std::chrono::steady_clock::now();
+    ProbeMap map;
+    map.geometry = bake_geometry(rays_, position, size.geometry, &report_.rays);
+    map.radiance = bake_radiance(rays_, light, position, size.radiance, static_cast<float>(manifest_.radiance_scale),
+                                 &report_.rays);
+    baking_seconds_ += seconds_since(start);
+    baked_texels_ += std::uint64_t(size.radiance) * size.radiance;
+    state.store(index, map);
+    return map;
+  }
+
+  void stop_if_asked() const {
+    if (!progress_.cancelled()) return;
+    throw Interrupted(fmt::format("interrupted; {:.1f} million texels are kept in {}.partial, the same command goes on "
+                                  "from there", static_cast<double>(done_texels_) * 1e-6, options_.pack.string()));
+  }
+
+  void add_feature(const char* name) {
+    if (std::find(manifest_.features.begin(), manifest_.features.end(), name) == manifest_.features.end()) {
+      manifest_.features.emplace_back(name);
+    }
+  }
+
+  const BakeOptions& options_;
+  Progress& progress_;
+  const Scene scene_;
+  const RayScene rays_;
+  const std::vector<LevelSize> levels_;
+  Manifest manifest_;
+  std::vector<Pose> tour_;
+  BakeReport report_;
+  double baking_seconds_ = 0.0;  // of the probes baked now, without those kept from before
+  std::uint64_t baked_texels_ = 0, done_texels_ = 0, cut_cells_ = 0, all_cells_ = 0;
+  bool sees_sky_ = false;
+};
+
+}  // namespace
+
+BakeReport bake(const BakeOptions& options, Progress& progress) {
+  check_options(options);
+  std::optional<tbb::global_control> limit;
+  if (options.light.threads > 0) limit.emplace(tbb::global_control::max_allowed_parallelism, options.light.threads);
+  return BakeJob(options, progress).run();
+}
+
+}  // namespace probewalk
