@@ -1,0 +1,109 @@
+// probewalk bake: from a glTF scene to a pack.
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "content/bake/bake_job.h"
+#include "content/error.h"
+#include "tools/probewalk/commands.h"
+
+namespace probewalk {
+
+namespace {
+
+struct BakeArguments {
+  BakeOptions bake;
+  double scale = 0.0;
+  std::vector<double> start;
+  std::string rooms_file, credits_file;
+};
+
+void print_report(const BakeOptions& options, const BakeReport& report, bool as_json) {
+  if (as_json) {
+    const nlohmann::json json = {{"pack", options.pack.string()},
+                                 {"rooms", report.rooms},
+                                 {"probes", report.probes},
+                                 {"levels", report.levels},
+                                 {"texels", report.texels},
+                                 {"rays", report.rays},
+                                 {"seconds", report.seconds},
+                                 {"seconds_per_million_texels", report.seconds_per_million_texels},
+                                 {"bytes_disk", report.bytes_disk},
+                                 {"bytes_device", report.bytes_device},
+                                 {"connected_fraction", report.connected_fraction}};
+    std::puts(json.dump(2).c_str());
+    return;
+  }
+  constexpr double kMiB = 1 << 20;
+  std::fputs(fmt::format("{}: {} probes in {} rooms, {} level{}\n"
+                         "  {:.1f} million texels in {:.0f} s, {:.2f} s per million texels, {:.0f} million rays\n"
+                         "  {:.1f} MiB on disk, {:.1f} MiB on the device, {:.2f} % of cells without a cut\n",
+                         options.pack.string(), report.probes, report.rooms, report.levels, report.levels == 1 ? "" : "s",
+                         static_cast<double>(report.texels) * 1e-6, report.seconds, report.seconds_per_million_texels,
+                         static_cast<double>(report.rays) * 1e-6, static_cast<double>(report.bytes_disk) / kMiB,
+                         static_cast<double>(report.bytes_device) / kMiB, 100.0 * report.connected_fraction)
+                 .c_str(),
+             stdout);
+}
+
+void run_bake(BakeArguments arguments, const CommonOptions& common) {
+  BakeOptions& options = arguments.bake;
+  if (arguments.scale > 0.0) options.load.scale = arguments.scale;
+  if (!arguments.rooms_file.empty()) options.load.rooms_file = arguments.rooms_file;
+  if (!arguments.credits_file.empty()) options.load.credits_file = arguments.credits_file;
+  if (!arguments.start.empty()) options.start_m = glm::dvec3(arguments.start[0], arguments.start[1], arguments.start[2]);
+  options.light.threads = common.threads;
+  options.producer = std::string("probewalk ") + PROBEWALK_VERSION;
+  const std::unique_ptr<Progress> progress = make_progress(common);
+  print_report(options, bake(options, *progress), common.json);
+}
+
+}  // namespace
+
+void add_bake_command(CLI::App& app, CommonOptions& common) {
+  CLI::App* command = app.add_subcommand("bake", "Bake a glTF scene into a probe pack");
+  command->footer(
+      "States the unit and the lights it assumes, estimates time and size, then shows progress. Interrupted (Ctrl-C), it\n"
+      "keeps what is finished beside the pack; the same command goes on from there. The same scene and options give the\n"
+      "same bytes, whatever the number of threads.\n\n"
+      "  probewalk bake house.glb -o house.probes\n"
+      "  probewalk bake flat.gltf -o flat.probes --scale 0.01 --max-probes 60    a scene in centimetres, small pack");
+  auto arguments = std::make_shared<BakeArguments>();
+  BakeOptions& bake = arguments->bake;
+  command->add_option("scene", bake.scene_file, "The scene: .gltf or .glb")->required();
+  command->add_option("-o,--output", bake.pack, "The pack, a folder NAME.probes; an older one of that name is replaced")
+      ->required();
+  command->add_option("--resolution", bake.resolution,
+                      "Cells per side of a probe's map, a power of two: 256 for a first look, 512 for rooms, 1024 and more "
+                      "for clutter and foliage")->capture_default_str();
+  command->add_option("--radiance-resolution", bake.radiance_resolution,
+                      "Texels per side of a probe's picture, a power of two (0 = as --resolution): what textures need, "
+                      "whatever the geometry needs")->capture_default_str();
+  command->add_option("--spacing", bake.placement.spacing_m,
+                      "Metres between probes (0 = from the rooms' sizes); widened until --max-probes suffice")
+      ->check(CLI::Range(0.0, 1000.0))->capture_default_str();
+  command->add_option("--max-probes", bake.placement.max_probes, "At most this many probes: time and size grow with them")
+      ->check(CLI::Range(1, 4096))->capture_default_str();
+  command->add_option("--samples", bake.light.samples, "Rays a point and bounce of indirect light; more is smoother")
+      ->check(CLI::Range(8, 65536))->capture_default_str();
+  command->add_option("--bounces", bake.light.bounces,
+                      "Bounces of indirect light that are followed; what would come after is extrapolated")
+      ->check(CLI::Range(0, 64))->capture_default_str();
+  command->add_option("--seed", bake.light.seed, "Turns the sampling patterns of indirect light")->capture_default_str();
+  command->add_option("--rooms", arguments->rooms_file, "Room names and boxes, instead of rooms.json beside the scene");
+  command->add_option("--scale", arguments->scale, "Metres per unit of the file, instead of the guess that is stated")
+      ->check(CLI::PositiveNumber);
+  command->add_flag("--recentre", bake.load.recentre, "Move the scene's middle to x = z = 0 and its lowest point to y = 0");
+  command->add_option("--start", arguments->start, "Where a walk starts: x,y,z in metres, moved to the nearest floor")
+      ->delimiter(',')->expected(3);
+  command->add_option("--credits", arguments->credits_file, "Text file of credits, instead of the scene's own");
+  command->add_option("--only-room", bake.only_room, "Bake this room of an existing pack anew (`probewalk info` lists rooms)");
+  command->add_option("--isa", bake.isa,
+                      "Instruction set of the ray caster (sse2, sse4.2, avx, avx2, avx512), for equal bytes on unequal "
+                      "processors");
+  add_common_options(*command, common);
+  command->callback([arguments, &common] { run_bake(*arguments, common); });
+}
+
+}  // namespace probewalk
