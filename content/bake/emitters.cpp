@@ -12,7 +12,7 @@ namespace probewalk {
 namespace {
 
 // A larger triangle is a soft light that the cache gathers well, and that sixteen points stand for badly.
-constexpr float kPatchTriangle_m2 = 4.0f;
+constexpr float kPatchTriangle_m2 = 0.6f;
 constexpr float kPatchCell_m = 1.0f;    // a longer emissive object (a chain of lights) is several patches
 constexpr std::size_t kMaxPatches = 64;  // the strongest; the others are gathered
 constexpr float kBlocked_m = 0.02f;      // a side that meets something this soon sends its light nowhere
