@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 #include <span>
+#include <string_view>
 
 #include "content/error.h"
 
@@ -66,10 +67,10 @@ struct Glb {
 };
 
 // Each scene is made once for all tests but the one that compares two makings.
-const Glb& scene(const std::string& name) {
-  static std::map<std::string, Glb> made;
+const Glb& scene(std::string_view name) {
+  static std::map<std::string, Glb, std::less<>> made;
   const auto found = made.find(name);
-  return found != made.end() ? found->second : made.emplace(name, make_procedural_glb(name)).first->second;
+  return found != made.end() ? found->second : made.emplace(std::string(name), make_procedural_glb(name)).first->second;
 }
 
 class EveryProceduralScene : public testing::TestWithParam<std::string> {};
