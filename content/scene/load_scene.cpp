@@ -3,6 +3,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "content/error.h"
@@ -72,9 +73,24 @@ void to_metres(Scene& scene, bool recentre) {
   scene.bounds = bounds_of(scene.positions_m);
 }
 
-// Names the BLEND materials and how much of each is left out, from 16 points a triangle.
+// Barycentric centroids of a triangle cut into 16 of equal area.
+std::array<glm::vec2, 16> even_points() {
+  constexpr int kRows = 4;
+  std::array<glm::vec2, 16> points;
+  std::size_t count = 0;
+  for (int u = 0; u < kRows; ++u) {
+    for (int v = 0; u + v < kRows; ++v) {
+      const glm::vec2 corner(u, v);
+      points[count++] = (corner + 1.0f / 3.0f) / static_cast<float>(kRows);
+      if (u + v + 1 < kRows) points[count++] = (corner + 2.0f / 3.0f) / static_cast<float>(kRows);
+    }
+  }
+  return points;
+}
+
+// Names the BLEND materials and how much of each is left out.
 void warn_of_blending(Scene& scene) {
-  constexpr int kPoints = 4;
+  const std::array<glm::vec2, 16> points = even_points();
   std::vector<double> total(scene.materials.size(), 0.0);
   std::vector<double> left_out(scene.materials.size(), 0.0);
   for (std::uint32_t i = 0; i < scene.triangles.size(); ++i) {
@@ -84,16 +100,10 @@ void warn_of_blending(Scene& scene) {
     const glm::dvec3 a = scene.positions_m[corner.x];
     const double area = glm::length(glm::cross(glm::dvec3(scene.positions_m[corner.y]) - a,
                                                glm::dvec3(scene.positions_m[corner.z]) - a));
-    int missing = 0;
-    for (int u = 0; u < kPoints; ++u) {
-      for (int v = 0; v < kPoints; ++v) {
-        glm::vec2 point((static_cast<float>(u) + 0.5f) / kPoints, (static_cast<float>(v) + 0.5f) / kPoints);
-        if (point.x + point.y > 1.0f) point = 1.0f - point;
-        if (!point_exists(scene, i, point)) ++missing;
-      }
-    }
+    const auto missing = std::count_if(points.begin(), points.end(),
+                                       [&](const glm::vec2& point) { return !point_exists(scene, i, point); });
     total[material] += area;
-    left_out[material] += area * missing / (kPoints * kPoints);
+    left_out[material] += area * static_cast<double>(missing) / static_cast<double>(points.size());
   }
   std::vector<std::string> shares;
   for (std::size_t m = 0; m < total.size(); ++m) {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstring>
@@ -137,7 +138,11 @@ Bytes SourceFiles::resolve(const std::string& uri) {
     throw BadInput(fmt::format("{}: the URI '{}' {}; only data and files beside the scene are read",
                                scene_file_.string(), shortened(uri), reason));
   }
-  return read(scene_file_.parent_path() / path, kMaxFileBytes);
+  try {
+    return read(scene_file_.parent_path() / path, kMaxFileBytes);
+  } catch (const BadInput& error) {
+    throw BadInput(fmt::format("{} refers to {}", scene_file_.string(), error.what()));
+  }
 }
 
 std::string SourceFiles::hash() const {
