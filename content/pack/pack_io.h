@@ -31,6 +31,10 @@ std::string content_hash(std::span<const std::byte> bytes);
 std::vector<std::byte> read_chunk_file(const std::filesystem::path& pack, const std::string& hash,
                                        std::uint64_t bytes_disk);
 
+// Decodes the chunk of a room's level and checks that it is the one the manifest means: number, sizes and positions of
+// its probes. Throws BadInput. Thread-safe.
+RoomLevel decode_level(const Manifest& manifest, std::size_t room, std::size_t level, std::span<const std::byte> bytes);
+
 class PackWriter {
  public:
   // Creates the folder (and `chunks/`) if needed.

@@ -74,13 +74,17 @@ std::vector<std::byte> read_chunk_file(const fs::path& pack, const std::string& 
   return bytes;
 }
 
-RoomLevel Pack::read_level(std::size_t room, std::size_t level) const {
-  const RoomEntry& entry = manifest_.rooms.at(room);
-  const LevelEntry& level_entry = entry.levels.at(level);
-  const std::string source = fmt::format("{} (room {}, level {})", level_entry.chunk, entry.id, level);
-  RoomLevel found = decode_chunk(read_chunk(level_entry), source);
-  check_belongs(found, manifest_, entry, level_entry, source);
+RoomLevel decode_level(const Manifest& manifest, std::size_t room, std::size_t level, std::span<const std::byte> bytes) {
+  const RoomEntry& room_entry = manifest.rooms.at(room);
+  const LevelEntry& level_entry = room_entry.levels.at(level);
+  const std::string source = fmt::format("chunk {} (room {}, level {})", level_entry.chunk, room_entry.id, level);
+  RoomLevel found = decode_chunk(bytes, source);
+  check_belongs(found, manifest, room_entry, level_entry, source);
   return found;
+}
+
+RoomLevel Pack::read_level(std::size_t room, std::size_t level) const {
+  return decode_level(manifest_, room, level, read_chunk(manifest_.rooms.at(room).levels.at(level)));
 }
 
 std::vector<std::string> Pack::verify(Progress& progress) const {

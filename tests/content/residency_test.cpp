@@ -1,0 +1,300 @@
+// The residency policy on simulated walks: no device, no files, no clock.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "content/error.h"
+#include "content/stream/residency.h"
+
+namespace probewalk {
+namespace {
+
+constexpr std::uint64_t kCoarse = 10, kMiddle = 40, kFine = 160;
+
+// Rooms of 4 m in a row along x, a door between each two; three levels each.
+Manifest row_of_rooms(std::uint32_t count) {
+  Manifest m;
+  for (std::uint32_t k = 0; k < count; ++k) {
+    RoomEntry room;
+    room.id = "room-" + std::to_string(k);
+    room.bounds = {{4.0 * k, 0.0, 0.0}, {4.0 * k + 4.0, 3.0, 4.0}};
+    for (const std::uint64_t bytes : {kCoarse, kMiddle, kFine}) {
+      room.levels.push_back({std::string(32, '0'), 8, 8, 1, bytes, -1.0});
+    }
+    m.rooms.push_back(room);
+    const double x = 4.0 * k;
+    if (k > 0) {
+      m.portals.push_back({static_cast<int>(k) - 1, static_cast<int>(k), {{x, 0, 1.5}, {x, 0, 2.5}, {x, 2, 2.5}, {x, 2, 1.5}}});
+    }
+  }
+  return m;
+}
+
+Walker standing(double x) { return {{x, 1.6, 2.0}, {0.0, 0.0, 0.0}}; }
+
+// A device and a loader of numbers: loads arrive some updates later, evicted bytes are freed some updates later.
+class Simulation {
+ public:
+  Simulation(const Manifest& manifest, const ResidencyOptions& options)
+      : manifest_(manifest), options_(options), residency_(manifest, options), status_(residency_.absent()) {}
+
+  ResidencyDecision step(const Walker& walker) {
+    std::erase_if(loading_, [&](Loading& l) {
+      if (--l.updates_left > 0) return false;
+      status_[l.key.room][l.key.level] = LevelStatus::kResident;
+      return true;
+    });
+    std::erase_if(retired_, [](Retired& r) { return --r.updates_left == 0; });
+    std::uint64_t retired = 0;
+    for (const Retired& r : retired_) retired += r.bytes;
+    ResidencyDecision d = residency_.decide(walker, status_, retired);
+    for (const LevelKey& key : d.evictions) {
+      EXPECT_EQ(status_[key.room][key.level], LevelStatus::kResident);
+      EXPECT_TRUE(std::find(d.wanted.begin(), d.wanted.end(), key) == d.wanted.end());
+      EXPECT_FALSE(key.room == d.room && key.level == 0);
+      status_[key.room][key.level] = LevelStatus::kAbsent;
+      retired_.push_back({bytes(key), 3});
+    }
+    for (const LevelKey& key : d.loads) {
+      EXPECT_EQ(status_[key.room][key.level], LevelStatus::kAbsent);
+      status_[key.room][key.level] = LevelStatus::kLoading;
+      loading_.push_back({key, 5});
+      ++loads_;
+    }
+    evictions_ += d.evictions.size();
+    EXPECT_LE(held(), options_.budget_bytes);
+    EXPECT_LE(loading_.size(), options_.most_loads);
+    return d;
+  }
+
+  // Steps without motion until nothing is missing.
+  ResidencyDecision settle(const Walker& walker) {
+    ResidencyDecision d;
+    for (int k = 0; k < 500; ++k) {
+      d = step(walker);
+      if (d.settled) return d;
+    }
+    ADD_FAILURE() << "never settled";
+    return d;
+  }
+
+  std::uint64_t held() const {
+    std::uint64_t sum = 0;
+    for (const Retired& r : retired_) sum += r.bytes;
+    for (std::uint32_t room = 0; room < status_.size(); ++room) {
+      for (std::uint32_t level = 0; level < status_[room].size(); ++level) {
+        const LevelStatus s = status_[room][level];
+        if (s == LevelStatus::kLoading || s == LevelStatus::kResident) sum += bytes({room, level});
+      }
+    }
+    return sum;
+  }
+  bool resident(std::uint32_t room, std::uint32_t level) const { return status_[room][level] == LevelStatus::kResident; }
+  void fail(LevelKey key) { status_[key.room][key.level] = LevelStatus::kFailed; }
+  std::size_t loads() const { return loads_; }
+  std::size_t evictions() const { return evictions_; }
+
+ private:
+  struct Loading {
+    LevelKey key;
+    int updates_left;
+  };
+  struct Retired {
+    std::uint64_t bytes;
+    int updates_left;
+  };
+  std::uint64_t bytes(LevelKey key) const { return manifest_.rooms[key.room].levels[key.level].bytes_device; }
+
+  const Manifest& manifest_;
+  ResidencyOptions options_;
+  Residency residency_;
+  LevelStatuses status_;
+  std::vector<Loading> loading_;
+  std::vector<Retired> retired_;
+  std::size_t loads_ = 0, evictions_ = 0;
+};
+
+ResidencyOptions with_budget(std::uint64_t bytes) {
+  ResidencyOptions options;
+  options.budget_bytes = bytes;
+  return options;
+}
+
+TEST(RoomGraph, FindsTheRoomAndKeepsItInADoorway) {
+  const Manifest m = row_of_rooms(3);
+  const RoomGraph graph(m.rooms, m.portals);
+  EXPECT_EQ(graph.room_of({5.0, 1.0, 1.0}, -1, 0.3), 1u);
+  EXPECT_EQ(graph.room_of({-3.0, 1.0, 1.0}, -1, 0.3), 0u);   // outside: the nearest
+  EXPECT_EQ(graph.room_of({50.0, 1.0, 1.0}, -1, 0.3), 2u);
+  EXPECT_EQ(graph.room_of({4.2, 1.0, 1.0}, 0, 0.3), 0u);     // sways into room 1
+  EXPECT_EQ(graph.room_of({4.4, 1.0, 1.0}, 0, 0.3), 1u);     // is in room 1
+  EXPECT_EQ(graph.room_of({3.8, 1.0, 1.0}, 1, 0.3), 1u);     // sways back
+}
+
+TEST(RoomGraph, ARoomInsideABiggerOneIsEntered) {
+  Manifest m = row_of_rooms(1);
+  m.rooms.push_back(m.rooms[0]);
+  m.rooms[1].bounds = {{-20.0, -1.0, -20.0}, {20.0, 5.0, 20.0}};
+  const RoomGraph graph(m.rooms, m.portals);
+  EXPECT_EQ(graph.room_of({10.0, 1.0, 2.0}, 0, 0.3), 1u);
+  EXPECT_EQ(graph.room_of({2.0, 1.0, 2.0}, 1, 0.3), 0u);
+}
+
+TEST(RoomGraph, ReachesThroughPortalsNearestFirst) {
+  const Manifest m = row_of_rooms(6);
+  const RoomGraph graph(m.rooms, m.portals);
+  std::vector<std::uint32_t> rooms;
+  for (const auto& reach : graph.reach(2, {11.0, 1.0, 2.0}, 2)) rooms.push_back(reach.room);
+  EXPECT_THAT(rooms, testing::ElementsAre(2, 3, 1, 4, 0));
+  EXPECT_EQ(graph.reach(0, {1.0, 1.0, 2.0}, 3).size(), 4u);
+}
+
+TEST(Residency, ASmallBuildingIsWhollyResidentAtItsCoarsest) {
+  const Manifest m = row_of_rooms(8);
+  Simulation s(m, {});
+  const ResidencyDecision d = s.settle(standing(1.0));
+  for (std::uint32_t room = 0; room < 8; ++room) EXPECT_TRUE(s.resident(room, 0)) << room;
+  for (std::uint32_t room = 0; room < 3; ++room) EXPECT_TRUE(s.resident(room, 2)) << room;
+  EXPECT_FALSE(s.resident(3, 2));
+  EXPECT_FALSE(d.coarse);
+}
+
+TEST(Residency, TheWalkersRoomComesFirst) {
+  const Manifest m = row_of_rooms(8);
+  Residency residency(m, {});
+  const ResidencyDecision d = residency.decide(standing(13.0), residency.absent());
+  EXPECT_EQ(d.room, 3u);
+  EXPECT_EQ(d.loads.size(), 4u);
+  EXPECT_EQ(d.loads[0], (LevelKey{3, 0}));
+  EXPECT_EQ(d.loads[1], (LevelKey{2, 0}));  // its door is nearer than the other
+  EXPECT_TRUE(d.coarse);
+  EXPECT_FALSE(d.settled);
+}
+
+TEST(Residency, TheSmallestBudgetIsStatedAndWorks) {
+  const Manifest m = row_of_rooms(10);
+  EXPECT_EQ(minimum_budget(m), 7 * kCoarse);
+  try {
+    Residency(m, with_budget(7 * kCoarse - 1));
+    ADD_FAILURE() << "accepted";
+  } catch (const BadUsage& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("--device-budget 1"));
+  }
+  Simulation s(m, with_budget(7 * kCoarse));
+  for (double x = 0.5; x < 39.5; x += 0.05) s.step({{x, 1.6, 2.0}, {1.4, 0.0, 0.0}});
+  s.settle(standing(39.0));
+  EXPECT_TRUE(s.resident(9, 0) && s.resident(6, 0));
+}
+
+TEST(Residency, WithinTheBudgetTheFinestLevelThatFits) {
+  const Manifest m = row_of_rooms(3);
+  Simulation s(m, with_budget(3 * kCoarse + kFine + kMiddle));
+  s.settle(standing(1.0));
+  EXPECT_TRUE(s.resident(0, 2));
+  EXPECT_TRUE(s.resident(1, 1));
+  EXPECT_FALSE(s.resident(1, 2) || s.resident(2, 1) || s.resident(2, 2));
+}
+
+TEST(Residency, AWalkThereAndBackKeepsTheWalkersRoomAndTheBudget) {
+  const Manifest m = row_of_rooms(12);
+  for (const std::uint64_t budget : {7 * kCoarse, 7 * kCoarse + kMiddle, 7 * kCoarse + 2 * kFine, 12 * kFine, kUnlimitedBudget}) {
+    Simulation s(m, with_budget(budget));
+    s.settle(standing(0.5));
+    const auto walk = [&](double from, double to) {
+      const double step = from < to ? 0.02 : -0.02;  // 1.4 m/s at 72 Hz
+      for (double x = from; (to - x) * step > 0.0; x += step) {
+        const ResidencyDecision d = s.step({{x, 1.6, 2.0}, {step * 72.0, 0.0, 0.0}});
+        ASSERT_TRUE(s.resident(d.room, 0)) << x;
+      }
+    };
+    walk(0.5, 46.0);
+    walk(46.0, 0.5);
+    s.settle(standing(0.5));
+  }
+}
+
+TEST(Residency, TheRoomAheadIsReadyWhenItIsEntered) {
+  const Manifest m = row_of_rooms(12);
+  Simulation s(m, with_budget(7 * kCoarse + 2 * kFine + kMiddle));
+  s.settle(standing(2.0));
+  for (double x = 2.0; x < 46.0; x += 0.02) {
+    const ResidencyDecision d = s.step({{x, 1.6, 2.0}, {1.4, 0.0, 0.0}});
+    ASSERT_TRUE(s.resident(d.room, 2)) << x;
+  }
+}
+
+TEST(Residency, StandingInADoorwayDoesNotThrash) {
+  const Manifest m = row_of_rooms(8);
+  for (const std::uint64_t budget : {7 * kCoarse + kFine, 7 * kCoarse + 2 * kFine, 7 * kCoarse + 3 * kFine}) {
+    Simulation s(m, with_budget(budget));
+    s.settle(standing(15.9));
+    const std::size_t loads = s.loads(), evictions = s.evictions();
+    for (int k = 0; k < 2000; ++k) {
+      const double sway = 0.2 * std::sin(0.1 * k);
+      s.step({{16.0 + sway, 1.6, 2.0}, {0.2 * 0.1 * 72.0 * std::cos(0.1 * k), 0.0, 0.0}});
+    }
+    EXPECT_LE(s.loads() - loads, 2u) << budget;
+    EXPECT_LE(s.evictions() - evictions, 2u) << budget;
+  }
+}
+
+TEST(Residency, TurningBackFindsTheRoomStillThere) {
+  const Manifest m = row_of_rooms(8);
+  Simulation s(m, with_budget(8 * kCoarse + 6 * kFine));
+  s.settle(standing(2.0));
+  s.settle(standing(14.0));
+  const std::size_t loads = s.loads();
+  s.settle(standing(2.0));
+  EXPECT_EQ(s.loads(), loads);
+}
+
+TEST(Residency, TeleportsSettleWithinTheBudget) {
+  const Manifest m = row_of_rooms(40);
+  Simulation s(m, with_budget(7 * kCoarse + kFine));
+  for (const double x : {2.0, 150.0, 42.0, 158.0, 3.0, 81.0, 80.0}) {
+    const auto room = static_cast<std::uint32_t>(x / 4.0);
+    for (int k = 0; k < 3; ++k) s.step({{x, 1.6, 2.0}, {500.0, 0.0, 0.0}});
+    EXPECT_EQ(s.settle(standing(x)).room, room);
+    EXPECT_TRUE(s.resident(room, 2) && s.resident(room, 0)) << x;
+  }
+}
+
+TEST(Residency, ABadChunkKeepsTheCoarserLevel) {
+  const Manifest m = row_of_rooms(2);
+  Simulation s(m, {});
+  s.fail({0, 2});
+  s.settle(standing(1.0));
+  EXPECT_TRUE(s.resident(0, 0) && s.resident(0, 1));
+  s.fail({0, 1});
+  s.settle(standing(1.0));
+  s.fail({1, 0});
+  s.settle(standing(1.0));
+  EXPECT_TRUE(s.resident(1, 2));
+}
+
+TEST(Residency, RoomsWithoutProbesAskForNothing) {
+  Manifest m = row_of_rooms(3);
+  m.rooms[1].levels.clear();
+  Simulation s(m, {});
+  const ResidencyDecision d = s.settle(standing(5.0));
+  EXPECT_EQ(d.room, 1u);
+  EXPECT_TRUE(s.resident(0, 2) && s.resident(2, 2));
+}
+
+TEST(Residency, TheSameWalkGivesTheSameDecisions) {
+  const Manifest m = row_of_rooms(12);
+  std::vector<LevelKey> first, second;
+  for (auto* loads : {&first, &second}) {
+    Simulation s(m, with_budget(7 * kCoarse + 2 * kFine));
+    for (double x = 0.5; x < 46.0; x += 0.1) {
+      const auto d = s.step({{x, 1.6, 2.0}, {1.4, 0.0, 0.0}});
+      loads->insert(loads->end(), d.loads.begin(), d.loads.end());
+    }
+  }
+  EXPECT_EQ(first, second);
+}
+
+}  // namespace
+}  // namespace probewalk

@@ -1,0 +1,211 @@
+// Loader threads and the streamer on small packs in a folder: what arrives, what fails, how it ends.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <fstream>
+#include <map>
+#include <mutex>
+#include <semaphore>
+#include <set>
+#include <thread>
+
+#include "content/error.h"
+#include "content/stream/room_streamer.h"
+#include "pack_fixture.h"
+
+namespace probewalk {
+namespace {
+
+using namespace std::chrono_literals;
+using testing::HasSubstr;
+
+// Remembers what was handed over; the keys only, or all of it.
+class Deliveries {
+ public:
+  ChunkLoader::Deliver sink() {
+    return [this](LoadedLevel&& loaded) {
+      const std::lock_guard lock(mutex_);
+      levels_.push_back(std::move(loaded));
+    };
+  }
+  std::vector<LoadedLevel> take() {
+    const std::lock_guard lock(mutex_);
+    return std::exchange(levels_, {});
+  }
+
+ private:
+  std::mutex mutex_;
+  std::vector<LoadedLevel> levels_;
+};
+
+std::vector<LoadResult> wait_for(ChunkLoader& loader, std::size_t count) {
+  std::vector<LoadResult> all;
+  for (int k = 0; k < 500 && all.size() < count; ++k) {
+    loader.wait(20ms);
+    for (LoadResult& result : loader.poll()) all.push_back(std::move(result));
+  }
+  EXPECT_EQ(all.size(), count);
+  return all;
+}
+
+TEST(ChunkLoader, DeliversTheWordsOfTheLevel) {
+  const TemporaryFolder folder("loader");
+  const Manifest m = write_small_pack(folder.path(), 2);
+  const FolderSource source(folder.path());
+  Deliveries deliveries;
+  ChunkLoader loader(m, source, deliveries.sink());
+  ASSERT_TRUE(loader.request({1, 1}));
+  const auto results = wait_for(loader, 1);
+  EXPECT_EQ(results[0].error, "");
+  EXPECT_EQ(results[0].bytes_disk, m.rooms[1].levels[1].bytes_disk);
+  EXPECT_LE(results[0].requested_ns, results[0].started_ns);
+  EXPECT_LE(results[0].started_ns, results[0].finished_ns);
+  EXPECT_EQ(loader.depth(), 0u);
+  const auto loaded = deliveries.take();
+  ASSERT_EQ(loaded.size(), 1u);
+  EXPECT_EQ(loaded[0].first_probe, 2u);
+  const RoomLevel expected = Pack::open(folder.path()).read_level(1, 1);
+  ASSERT_EQ(loaded[0].probes.size(), 2u);
+  EXPECT_EQ(loaded[0].probes[1].geometry, build_device_probe(expected.probes[1]).geometry);
+  EXPECT_EQ(loaded[0].probes[1].radiance, build_device_probe(expected.probes[1]).radiance);
+}
+
+TEST(ChunkLoader, BadChunksAndRefusingDevicesAreValues) {
+  const TemporaryFolder folder("loader-bad");
+  const Manifest m = write_small_pack(folder.path(), 1);
+  std::ofstream(folder.path() / "chunks" / m.rooms[0].levels[1].chunk, std::ios::app) << "x";
+  const FolderSource source(folder.path());
+  ChunkLoader loader(m, source, [](LoadedLevel&&) { throw NoDevice("device memory is exhausted"); }, {.threads = 2});
+  ASSERT_TRUE(loader.request({0, 0}) && loader.request({0, 1}) && loader.request({7, 0}));
+  std::map<LevelKey, std::string> errors;
+  for (const LoadResult& result : wait_for(loader, 3)) errors[result.key] = result.error;
+  EXPECT_THAT(errors[(LevelKey{0, 0})], HasSubstr("exhausted"));
+  EXPECT_THAT(errors[(LevelKey{0, 1})], HasSubstr(m.rooms[0].levels[1].chunk));
+  EXPECT_NE(errors[(LevelKey{7, 0})], "");
+}
+
+// A source that holds its readers until told.
+class GatedSource final : public ChunkSource {
+ public:
+  explicit GatedSource(std::filesystem::path pack) : folder_(std::move(pack)) {}
+  std::vector<std::byte> read(const LevelEntry& level) const override {
+    started_.release();
+    gate_.acquire();
+    return folder_.read(level);
+  }
+  void open(int readers) { gate_.release(readers); }
+  void wait_for_reader() { started_.acquire(); }
+
+ private:
+  FolderSource folder_;
+  mutable std::counting_semaphore<> gate_{0}, started_{0};
+};
+
+TEST(ChunkLoader, AFullQueueSaysSo) {
+  const TemporaryFolder folder("loader-full");
+  const Manifest m = write_small_pack(folder.path(), 1);
+  GatedSource source(folder.path());
+  Deliveries deliveries;
+  ChunkLoader loader(m, source, deliveries.sink(), {.threads = 1, .queue_capacity = 2});
+  ASSERT_TRUE(loader.request({0, 0}));
+  source.wait_for_reader();
+  EXPECT_TRUE(loader.request({0, 0}));
+  EXPECT_TRUE(loader.request({0, 0}));
+  EXPECT_FALSE(loader.request({0, 0}));
+  EXPECT_EQ(loader.depth(), 3u);
+  source.open(3);
+  wait_for(loader, 3);
+}
+
+TEST(ChunkLoader, EndsInTheMidstOfLoading) {
+  const TemporaryFolder folder("loader-end");
+  const Manifest m = write_small_pack(folder.path(), 2);
+  const FolderSource source(folder.path());
+  for (int trial = 0; trial < 20; ++trial) {
+    Deliveries deliveries;
+    ChunkLoader loader(m, source, deliveries.sink(), {.threads = 3});
+    for (std::uint32_t k = 0; k < 40; ++k) loader.request({k % 2, k / 2 % 2});
+    if (trial % 2 == 1) loader.wait(5ms);
+  }
+}
+
+TEST(RoomStreamer, SettlesWithTheRoomsThatAreWanted) {
+  const TemporaryFolder folder("streamer");
+  const Manifest m = write_small_pack(folder.path(), 2);
+  const FolderSource source(folder.path());
+  Deliveries deliveries;
+  RoomStreamer streamer(m, source, deliveries.sink(), [](LevelKey) { ADD_FAILURE() << "nothing needs to go"; });
+  EXPECT_TRUE(streamer.settle({{1.0, 1.6, -2.0}, {}}, 10s));
+  EXPECT_EQ(deliveries.take().size(), 4u);
+  const StreamerStatistics& s = streamer.statistics();
+  EXPECT_EQ(s.bytes_read, m.bytes_disk());
+  EXPECT_EQ(s.levels_loaded, 4u);
+  EXPECT_EQ(s.rooms_loaded, 2u);
+  EXPECT_EQ(s.device_bytes, m.bytes_device());
+  EXPECT_EQ(s.need_to_resident_ns.size(), 4u);
+  for (const std::int64_t ns : s.need_to_resident_ns) EXPECT_GT(ns, 0);
+  EXPECT_GT(s.coarse_updates, 0u);
+  EXPECT_FALSE(streamer.decision().coarse);
+}
+
+TEST(RoomStreamer, ABadChunkCostsTheFineLevelNotTheWalk) {
+  const TemporaryFolder folder("streamer-bad");
+  const Manifest m = write_small_pack(folder.path(), 2);
+  std::filesystem::resize_file(folder.path() / "chunks" / m.rooms[0].levels[1].chunk, 77);
+  const FolderSource source(folder.path());
+  Deliveries deliveries;
+  RoomStreamer streamer(m, source, deliveries.sink(), [](LevelKey) {});
+  EXPECT_TRUE(streamer.settle({{1.0, 1.6, -2.0}, {}}, 10s));
+  EXPECT_EQ(streamer.status()[0][0], LevelStatus::kResident);
+  EXPECT_EQ(streamer.status()[0][1], LevelStatus::kFailed);
+  EXPECT_EQ(streamer.statistics().levels_failed, 1u);
+  EXPECT_THAT(streamer.take_errors(), testing::ElementsAre(HasSubstr("77 of")));
+  EXPECT_THAT(streamer.take_errors(), testing::IsEmpty());
+}
+
+TEST(RoomStreamer, StaysWithinTheBudgetAndEvictsWhatIsBehind) {
+  const TemporaryFolder folder("streamer-budget");
+  const Manifest m = write_small_pack(folder.path(), 6);
+  const FolderSource source(folder.path());
+  std::mutex mutex;
+  std::set<LevelKey> on_device;
+  StreamerOptions options;
+  options.residency.budget_bytes = 6 * 8000 + 2 * 16000;
+  options.loader.threads = 2;
+  RoomStreamer streamer(
+      m, source,
+      [&](LoadedLevel&& loaded) {
+        const std::lock_guard lock(mutex);
+        EXPECT_TRUE(on_device.insert({loaded.room, loaded.level}).second);
+      },
+      [&](LevelKey key) {
+        const std::lock_guard lock(mutex);
+        EXPECT_EQ(on_device.erase(key), 1u);
+      },
+      options);
+  for (double x = 1.0; x < 29.0; x += 0.25) {
+    ASSERT_TRUE(streamer.settle({{x, 1.6, -2.0}, {1.0, 0.0, 0.0}}, 10s));
+    const std::lock_guard lock(mutex);
+    EXPECT_TRUE(on_device.contains({streamer.decision().room, 1}));
+  }
+  EXPECT_LE(streamer.statistics().device_bytes_max, options.residency.budget_bytes);
+  EXPECT_FALSE(on_device.contains({0, 1}));
+}
+
+TEST(RoomStreamer, UpdateNeverWaitsForTheLoader) {
+  const TemporaryFolder folder("streamer-gated");
+  const Manifest m = write_small_pack(folder.path(), 2);
+  GatedSource source(folder.path());
+  Deliveries deliveries;
+  RoomStreamer streamer(m, source, deliveries.sink(), [](LevelKey) {});
+  for (int k = 0; k < 50; ++k) streamer.update({{1.0, 1.6, -2.0}, {}});
+  EXPECT_FALSE(streamer.settled());
+  EXPECT_EQ(streamer.statistics().coarse_updates, 50u);
+  EXPECT_EQ(streamer.statistics().queue_depth, 4u);
+  source.open(1000);
+  EXPECT_TRUE(streamer.settle({{1.0, 1.6, -2.0}, {}}, 10s));
+}
+
+}  // namespace
+}  // namespace probewalk
