@@ -20,7 +20,7 @@ Placement place_probes(const Scene& scene, const RayScene& rays, const Space& sp
   const HeadSpace heads(scene, rays, space);
   const double spacing_m = options.spacing_m > 0.0 ? options.spacing_m : typical_spacing_m(rays, heads);
   Placement placement;
-  placement.grid = choose_grid(heads, spacing_m, std::size_t(options.max_probes));
+  placement.grid = choose_grid(rays, heads, spacing_m, std::size_t(options.max_probes));
   SiteCounts counts;
   placement.sites = choose_sites(placement.grid, rays, space, heads, std::size_t(options.max_probes), counts);
   const ProbeGrid& grid = placement.grid;

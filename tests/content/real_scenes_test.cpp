@@ -61,12 +61,12 @@ TEST_P(RealScene, HasTheFloorAndProbesThatAPersonWouldExpect) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Shared, RealScene,
-                         ::testing::Values(Expected{"garage/garage.gltf", 10, 32, 8, 40, 0.9},
-                                           Expected{"cube-room/cube-room.gltf", 50, 95, 12, 60, 0.9},
-                                           Expected{"living-room/living-room.glb", 15, 42, 8, 60, 0.9},
-                                           Expected{"hotel-room/scene.glb", 30, 80, 20, 120, 0.9},
-                                           Expected{"zdm2/zdm2.glb", 300, 4000, 100, 200, 0.7},
-                                           Expected{"jungle/scene.gltf", 100, 3000, 20, 200, 0.7}),
+                         ::testing::Values(Expected{"garage/garage.gltf", 10, 32, 8, 24, 0.97},
+                                           Expected{"cube-room/cube-room.gltf", 50, 95, 12, 40, 0.97},
+                                           Expected{"living-room/living-room.glb", 15, 42, 8, 24, 0.97},
+                                           Expected{"hotel-room/scene.glb", 30, 80, 20, 60, 0.97},
+                                           Expected{"zdm2/zdm2.glb", 300, 4000, 100, 200, 0.95},
+                                           Expected{"jungle/scene.gltf", 100, 3000, 60, 200, 0.95}),
                          [](const auto& test) {
                            std::string name = std::filesystem::path(test.param.file).parent_path().string();
                            std::replace(name.begin(), name.end(), '-', '_');

@@ -2,10 +2,15 @@
 // horizontal spacing from the rooms' sizes, widened until the number of probes fits.
 #pragma once
 
+#include <array>
+
 #include "content/bake/placement.h"
 #include "content/bake/placement/head_space.h"
 
 namespace probewalk {
+
+// A vertex's probe may stand this far off it, in spacings along each axis.
+inline constexpr double kReach = 0.48;
 
 // Half of the typical distance across rooms, 1.6 to 3 m.
 double typical_spacing_m(const RayScene& rays, const HeadSpace& heads);
@@ -15,7 +20,10 @@ std::size_t count_useful(const ProbeGrid& grid, const HeadSpace& heads);
 bool is_useful(const ProbeGrid& grid, const HeadSpace& heads, glm::ivec3 vertex);
 
 // `probe` of the result is sized and zero.
-ProbeGrid choose_grid(const HeadSpace& heads, double spacing_m, std::size_t max_probes);
+ProbeGrid choose_grid(const RayScene& rays, const HeadSpace& heads, double spacing_m, std::size_t max_probes);
+
+// The vertices of the cell that serves a head, as the tracer chooses it; outside the grid that at its edge.
+std::array<glm::ivec3, 8> cell_corners(const ProbeGrid& grid, glm::dvec3 head_m);
 
 inline glm::dvec3 vertex_m(const ProbeGrid& grid, glm::ivec3 vertex) {
   return grid.origin_m + grid.spacing_m * glm::dvec3(vertex);

@@ -14,6 +14,7 @@ constexpr double kLean_m = 1.25;          // how far from the floor a head gets 
 constexpr float kFurnitureTop_m = 1.4f;   // higher than this is a wall to a head
 constexpr float kPassage_m = 0.3f;        // least common height through which air joins
 constexpr float kAboveFeet_m = 2.2f;      // air higher than this is not passed on from column to column
+constexpr float kHighest_m = 2.6f;        // above the floor: no head, and no probe for heads, is higher
 constexpr double kEyeSpacing_m = 0.5;
 constexpr double kMostEyePlaces = 2000.0;
 constexpr double kSittingEye_m = 0.8;
@@ -149,7 +150,8 @@ std::int64_t HeadSpace::gap_at(glm::dvec3 point_m) const {
   const std::uint32_t first = columns_.first[std::size_t(cell.y) * columns_.columns.x + cell.x];
   for (std::uint32_t s = 0; s < column.size(); ++s) {
     if (point_m.y <= column[s].upper_m || point_m.y >= gap_top(column, s)) continue;
-    return above_[first + s].reached ? std::int64_t(first + s) : -1;
+    const Owner& owner = above_[first + s];
+    return owner.reached && point_m.y <= owner.floor_m + kHighest_m ? std::int64_t(first + s) : -1;
   }
   return -1;
 }

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <numeric>
+#include <optional>
 
 #include "content/bake/placement/grid_choice.h"
 
@@ -24,7 +25,7 @@ bool sees(const RayScene& rays, glm::dvec3 a_m, glm::dvec3 b_m) {
 // Offsets within half a spacing, in units of it, nearest first; the vertex itself is the first.
 std::vector<glm::dvec3> offsets() {
   std::vector<glm::dvec3> list;
-  for (int code = 0; code < 125; ++code) list.push_back(glm::dvec3(code % 5 - 2, code / 5 % 5 - 2, code / 25 - 2) * 0.24);
+  for (int code = 0; code < 125; ++code) list.push_back(glm::dvec3(code % 5 - 2, code / 5 % 5 - 2, code / 25 - 2) * (0.5 * kReach));
   std::stable_sort(list.begin(), list.end(), [](glm::dvec3 a, glm::dvec3 b) { return glm::dot(a, a) < glm::dot(b, b); });
   return list;
 }
@@ -43,9 +44,9 @@ class SiteChooser {
 
   std::vector<ProbeSite> run(SiteCounts& counts) {
     for (const glm::ivec3& vertex : vertices_) stand(vertex);
+    for (const glm::ivec3& vertex : vertices_) stand_better(vertex);
     stand_in_doorways();
-    if (sites_.empty()) sites_.push_back({space_.start.position_m, room_of(space_.start.position_m)});
-    look_from_eyes();
+    if (sites_.empty()) add_site(space_.start.position_m, vertices_.size());
     share(counts);
     add_where_few_see(counts);
     serve_the_rest();
@@ -81,39 +82,86 @@ class SiteChooser {
       return glm::length((site.position_m - point_m) / grid_.spacing_m) < kApart;
     });
   }
-  double share_seen(glm::dvec3 point_m, const std::vector<std::uint32_t>& eyes) const {
-    std::size_t seen = 0;
-    for (const std::uint32_t e : eyes) seen += sees(rays_, point_m, heads_.eyes()[e]);
-    return double(seen) / double(eyes.size());
+
+  // Heads around a vertex, and how much each needs another probe that sees it (together 1).
+  struct Audience {
+    std::vector<std::uint32_t> eyes;
+    std::vector<double> need;
+  };
+  Audience audience_of(glm::ivec3 vertex) const {
+    Audience audience{eyes_around(vertex, kEyesPerVertex), {}};
+    double sum = 0.0;
+    for (const std::uint32_t eye : audience.eyes) {
+      audience.need.push_back(std::pow(1.0 + views(eye), -2.0));
+      sum += audience.need.back();
+    }
+    for (double& need : audience.need) need /= sum;
+    return audience;
+  }
+  double need_met(glm::dvec3 point_m, const Audience& audience) const {
+    double met = 0.0;
+    for (std::size_t i = 0; i < audience.eyes.size(); ++i) {
+      if (sees(rays_, point_m, heads_.eyes()[audience.eyes[i]])) met += audience.need[i];
+    }
+    return met;
   }
 
-  void own(glm::ivec3 vertex, glm::dvec3 point_m) {
-    grid_.probe[vertex_index(grid_, vertex)] = std::uint32_t(sites_.size());
-    owner_.push_back(vertex_index(grid_, vertex));
+  std::uint32_t add_site(glm::dvec3 point_m, std::size_t vertex) {
     sites_.push_back({point_m, room_of(point_m)});
+    owner_.push_back(vertex);
+    seen_by_.push_back(eyes_that_see(point_m));
+    return std::uint32_t(sites_.size() - 1);
+  }
+  void move_site(std::uint32_t site, glm::dvec3 point_m) {
+    sites_[site] = {point_m, room_of(point_m)};
+    seen_by_[site] = eyes_that_see(point_m);
+  }
+  void remove_last_site() {
+    sites_.pop_back();
+    owner_.pop_back();
+    seen_by_.pop_back();
   }
 
-  // The vertex's own place when it is good, else the best within half a spacing: seen by many of the heads around it,
-  // away from surfaces, not far off.
-  void stand(glm::ivec3 vertex) {
+  // The vertex's own place when it is good, else the best within half a spacing: seen by the heads around it that need
+  // it most (those on the side of a wall that its neighbours left out), away from surfaces, not far off.
+  std::optional<glm::dvec3> best_place(glm::ivec3 vertex) const {
     constexpr double kWorthAProbe = 0.1;
-    if (sites_.size() >= max_probes_ || !is_useful(grid_, heads_, vertex)) return;
-    const std::vector<std::uint32_t> eyes = eyes_around(vertex, kEyesPerVertex);
+    const Audience audience = audience_of(vertex);
     static const std::vector<glm::dvec3> kOffsets = offsets();
     double most = -1.0;
-    glm::dvec3 best(0.0);
+    std::optional<glm::dvec3> best;
     for (const glm::dvec3& offset : kOffsets) {
       const glm::dvec3 point = vertex_m(grid_, vertex) + offset * grid_.spacing_m;
       if (!fits(point)) continue;
-      const double seen = share_seen(point, eyes);
+      const double met = need_met(point, audience);
       const double roomy = clearance_m(rays_, point, kRoomy_m) / kRoomy_m;
-      const double worth = seen + 0.3 * roomy - 0.5 * glm::length(offset);
-      if (seen < kWorthAProbe || worth <= most) continue;
+      const double worth = met + 0.3 * roomy - 0.5 * glm::length(offset);
+      if (met < kWorthAProbe || worth <= most) continue;
       most = worth;
       best = point;
-      if (offset == glm::dvec3(0.0) && seen >= 0.6 && roomy >= 0.6) break;
+      if (offset == glm::dvec3(0.0) && met >= 0.7 && roomy >= 0.6) break;
     }
-    if (most >= 0.0) own(vertex, best);
+    return best;
+  }
+  void stand(glm::ivec3 vertex) {
+    if (sites_.size() >= max_probes_ || !is_useful(grid_, heads_, vertex)) return;
+    const std::size_t v = vertex_index(grid_, vertex);
+    if (const auto place = best_place(vertex)) grid_.probe[v] = add_site(*place, v);
+  }
+  // Once all stand, each is moved to where it is needed most beside the others.
+  void stand_better(glm::ivec3 vertex) {
+    const std::uint32_t site = grid_.probe[vertex_index(grid_, vertex)];
+    if (site == kNobody) return;
+    const ProbeSite before = sites_[site];
+    const std::vector<bool> seen_before = seen_by_[site];
+    sites_[site].position_m = glm::dvec3(HUGE_VAL);  // does not count while its place is looked for
+    std::fill(seen_by_[site].begin(), seen_by_[site].end(), false);
+    if (const auto place = best_place(vertex)) {
+      move_site(site, *place);
+    } else {
+      sites_[site] = before;
+      seen_by_[site] = seen_before;
+    }
   }
 
   // A probe in a doorway sees both rooms: better than one that had to be moved anyway.
@@ -136,26 +184,19 @@ class SiteChooser {
         }
       }
       if (nearest == vertices_.size()) continue;
-      ProbeSite& site = sites_[grid_.probe[nearest]];
-      const ProbeSite before = site;
-      site.position_m = glm::dvec3(HUGE_VAL);  // does not count as a neighbour of its own new place
-      const std::vector<std::uint32_t> eyes = eyes_around(vertices_[nearest], kEyesPerVertex);
-      const bool better = fits(middle) && share_seen(middle, eyes) >= 0.8 * share_seen(before.position_m, eyes);
-      site = better ? ProbeSite{middle, room_of(middle)} : before;
+      const std::uint32_t site = grid_.probe[nearest];
+      const glm::dvec3 before = sites_[site].position_m;
+      move_site(site, glm::dvec3(HUGE_VAL));  // does not count while its new place is looked at
+      const Audience audience = audience_of(vertices_[nearest]);
+      const bool better = fits(middle) && need_met(middle, audience) >= 0.8 * need_met(before, audience);
+      move_site(site, better ? middle : before);
     }
   }
 
-  std::array<glm::ivec3, 8> corners(glm::dvec3 head_m) const {
-    const glm::dvec3 cell = glm::floor((head_m - grid_.origin_m) / grid_.spacing_m);
-    const glm::ivec3 first = glm::ivec3(glm::clamp(cell, glm::dvec3(0.0), glm::dvec3(glm::max(grid_.dims - 2, 0))));
-    std::array<glm::ivec3, 8> out;
-    for (int k = 0; k < 8; ++k) out[k] = glm::min(first + glm::ivec3(k & 1, k >> 1 & 1, k >> 2), grid_.dims - 1);
-    return out;
-  }
   int views(std::uint32_t eye) const {
     std::array<std::uint32_t, 8> seen;
     int count = 0;
-    for (const glm::ivec3& corner : corners(heads_.eyes()[eye])) {
+    for (const glm::ivec3& corner : cell_corners(grid_, heads_.eyes()[eye])) {
       const std::uint32_t site = grid_.probe[vertex_index(grid_, corner)];
       if (site == kNobody || !visible(eye, site)) continue;
       if (std::find(seen.begin(), seen.begin() + count, site) == seen.begin() + count) seen[count++] = site;
@@ -164,12 +205,8 @@ class SiteChooser {
   }
   bool visible(std::uint32_t eye, std::uint32_t site) const { return seen_by_[site][eye]; }
 
-  void look_from_eyes() {
-    seen_by_.clear();
-    for (const ProbeSite& site : sites_) seen_by_.push_back(eyes_that_see(site.position_m));
-  }
   std::vector<bool> eyes_that_see(glm::dvec3 point_m) const {
-    const double far = 3.0 * glm::length(grid_.spacing_m);
+    const double far = 3.0 * glm::length(grid_.spacing_m);  // no head in a cell around the vertex is farther
     std::vector<bool> seen(heads_.eyes().size(), false);
     for (std::size_t e = 0; e < seen.size(); ++e) {
       seen[e] = glm::distance(heads_.eyes()[e], point_m) < far && sees(rays_, point_m, heads_.eyes()[e]);
@@ -191,7 +228,7 @@ class SiteChooser {
   std::vector<std::uint32_t> heads_in_cells_of(glm::ivec3 vertex) const {
     std::vector<std::uint32_t> eyes = eyes_around(vertex, heads_.eyes().size());
     std::erase_if(eyes, [&](std::uint32_t e) {
-      const auto around = corners(heads_.eyes()[e]);
+      const auto around = cell_corners(grid_, heads_.eyes()[e]);
       return std::find(around.begin(), around.end(), vertex) == around.end();
     });
     return eyes;
@@ -206,7 +243,7 @@ class SiteChooser {
       for (std::size_t i = 0; i < eyes.size(); ++i) {
         if (!visible(eyes[i], site)) continue;
         bool fresh = true;
-        for (const glm::ivec3& corner : corners(heads_.eyes()[eyes[i]])) {
+        for (const glm::ivec3& corner : cell_corners(grid_, heads_.eyes()[eyes[i]])) {
           fresh = fresh && grid_.probe[vertex_index(grid_, corner)] != site;
         }
         gain += fresh ? need[i] : 0.05 * need[i];
@@ -225,18 +262,19 @@ class SiteChooser {
     static const std::vector<glm::dvec3> kOffsets = offsets();
     for (std::uint32_t eye = 0; eye < heads_.eyes().size() && sites_.size() < max_probes_; ++eye) {
       if (views(eye) >= kWantedViews) continue;
-      for (const glm::ivec3& vertex : corners(heads_.eyes()[eye])) {
+      for (const glm::ivec3& vertex : cell_corners(grid_, heads_.eyes()[eye])) {
         const std::size_t v = vertex_index(grid_, vertex);
         const std::uint32_t site = grid_.probe[v];
-        if (site != kNobody && owner_of(site) == v) continue;
+        if (site != kNobody && owner_[site] == v) continue;
         const std::vector<std::uint32_t> eyes = heads_in_cells_of(vertex);
+        const Audience audience = audience_of(vertex);
         double most = 0.0;
         glm::dvec3 best(0.0);
         for (const glm::dvec3& offset : kOffsets) {
           // Anywhere in the cells around the head's side of the vertex.
           const glm::dvec3 point = 0.5 * (heads_.eyes()[eye] + vertex_m(grid_, vertex)) + offset * grid_.spacing_m;
           if (!fits(point) || !sees(rays_, point, heads_.eyes()[eye])) continue;
-          const double worth = share_seen(point, eyes) + 0.3 * clearance_m(rays_, point, kRoomy_m) / kRoomy_m;
+          const double worth = need_met(point, audience) + 0.3 * clearance_m(rays_, point, kRoomy_m) / kRoomy_m;
           if (worth > most) {
             most = worth;
             best = point;
@@ -245,12 +283,9 @@ class SiteChooser {
         if (most <= 0.0) continue;
         const int before = least_views(eyes);
         const std::uint32_t old = grid_.probe[v];
-        own(vertex, best);
-        seen_by_.push_back(eyes_that_see(best));
+        grid_.probe[v] = add_site(best, v);
         if (least_views(eyes) < before) {  // another head lost the probe that it needed more
-          sites_.pop_back();
-          owner_.pop_back();
-          seen_by_.pop_back();
+          remove_last_site();
           grid_.probe[v] = old;
           continue;
         }
@@ -259,7 +294,6 @@ class SiteChooser {
       }
     }
   }
-  std::size_t owner_of(std::uint32_t site) const { return site < owner_.size() ? owner_[site] : vertices_.size(); }
   int least_views(const std::vector<std::uint32_t>& eyes) const {
     int least = 8;
     for (const std::uint32_t e : eyes) least = std::min(least, views(e));
@@ -291,7 +325,7 @@ class SiteChooser {
     std::vector<std::uint32_t> order(sites_.size());
     std::iota(order.begin(), order.end(), 0u);
     std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-      return sites_[a].room != sites_[b].room ? sites_[a].room < sites_[b].room : owner_of(a) < owner_of(b);
+      return sites_[a].room != sites_[b].room ? sites_[a].room < sites_[b].room : owner_[a] < owner_[b];
     });
     std::vector<std::uint32_t> place(sites_.size());
     std::vector<ProbeSite> sorted;

@@ -190,7 +190,8 @@ std::vector<std::size_t> choose_parts(const Scene& scene, const RayScene& rays, 
                                         [&](std::int32_t i) { return kept_places.beside_kept(rays, i); });
       if (2 * beside > std::ptrdiff_t(sample.size())) continue;
       const bool furnished = part.detail >= 20.0 && part.hit >= 0.8 && part.front >= 0.7;
-      if (!authored && !furnished && share_seen(rays, graph, part, kept_eyes_m) < 0.05) continue;
+      const bool room_sized = authored && part.area_m2 >= 3.0;  // else the inside of a wardrobe
+      if (!room_sized && !furnished && share_seen(rays, graph, part, kept_eyes_m) < 0.05) continue;
     }
     kept.push_back(id);
     kept_places.keep(part);

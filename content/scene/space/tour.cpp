@@ -12,7 +12,10 @@ namespace probewalk {
 namespace {
 
 constexpr double kPoseStep_m = 0.25;
-constexpr double kStationSpacing_m = 3.0;   // no place is farther than this from a station, walking
+constexpr double kStationSpacing_m = 3.0;   // no roomy place of a small home is farther from a station, walking
+constexpr float kRoomy_m = 0.45f;           // from walls; stations are not put into narrower nooks
+constexpr std::size_t kFewestStations = 4;  // of a small room, where it has room for them
+constexpr float kNearestStation_m = 1.2f;
 constexpr std::size_t kMostStations = 24;   // besides the middles of rooms
 constexpr std::size_t kMostRoomStations = 64;
 
@@ -57,16 +60,19 @@ std::vector<Station> find_stations(const WalkGround& ground, const WalkPaths& pa
     if (nearest_m[paths.local(place)] > float(kPoseStep_m)) add(paths.local(place));
   }
 
+  const double area_m2 = ground.graph.area_m2(ground.places.size());
+  const float spacing_m = float(std::max(kStationSpacing_m, 0.3 * std::sqrt(area_m2)));
   for (std::size_t extra = 0; extra < kMostStations; ++extra) {
     std::int32_t farthest = -1;
     for (std::size_t i = 0; i < nearest_m.size(); ++i) {
-      const bool fits = ground.graph.places[ground.places[i]].wall_m >= float(kBodyRadius_m) + 0.1f;
-      if (!fits || nearest_m[i] == HUGE_VALF) continue;
+      const bool roomy = ground.graph.places[ground.places[i]].wall_m >= kRoomy_m;
+      if (!roomy || nearest_m[i] == HUGE_VALF) continue;
       if (farthest < 0 || nearest_m[i] > nearest_m[farthest]) farthest = std::int32_t(i);
     }
-    if (farthest < 0 || nearest_m[farthest] < float(kStationSpacing_m)) break;
+    const bool few = stations.size() < kFewestStations;
+    if (farthest < 0 || nearest_m[farthest] < (few ? kNearestStation_m : spacing_m)) break;
     const std::int32_t middle = paths.local(climb(ground.graph, paths, ground.places[farthest]));
-    const bool new_ground = nearest_m[middle] >= 0.5f * float(kStationSpacing_m);
+    const bool new_ground = nearest_m[middle] >= 0.5f * nearest_m[farthest];
     add(new_ground ? middle : farthest);
   }
   return stations;
@@ -79,11 +85,43 @@ struct WayPoint {
   bool station;
 };
 
-// The way from station to station, nearest unvisited first, as places: corners only.
-std::vector<WayPoint> walk_stations(const WalkGround& ground, const std::vector<Station>& stations) {
-  const FloorGraph& graph = ground.graph;
+// Stations in walking order from the first: nearest unvisited first, then stretches turned round while that shortens
+// the way (2-opt).
+std::vector<std::size_t> order_stations(const std::vector<Station>& stations) {
+  const auto cost = [&](std::size_t a, std::size_t b) {
+    return double(stations[a].tree.cost[stations[b].local]) + double(stations[b].tree.cost[stations[a].local]);
+  };
+  std::vector<std::size_t> order{0};
   std::vector<bool> visited(stations.size(), false);
   visited[0] = true;
+  for (;;) {
+    std::size_t next = 0;
+    for (std::size_t s = 1; s < stations.size(); ++s) {
+      if (visited[s] || cost(order.back(), s) == HUGE_VAL) continue;
+      if (next == 0 || cost(order.back(), s) < cost(order.back(), next)) next = s;
+    }
+    if (next == 0) break;
+    visited[next] = true;
+    order.push_back(next);
+  }
+  for (bool shorter = true; shorter;) {
+    shorter = false;
+    for (std::size_t i = 1; i + 1 < order.size(); ++i) {
+      for (std::size_t j = i + 1; j < order.size(); ++j) {
+        double gain = cost(order[i - 1], order[i]) - cost(order[i - 1], order[j]);
+        if (j + 1 < order.size()) gain += cost(order[j], order[j + 1]) - cost(order[i], order[j + 1]);
+        if (gain <= 1e-6) continue;
+        std::reverse(order.begin() + std::ptrdiff_t(i), order.begin() + std::ptrdiff_t(j) + 1);
+        shorter = true;
+      }
+    }
+  }
+  return order;
+}
+
+// The way from station to station: straight stretches, one point for every column crossed.
+std::vector<WayPoint> walk_stations(const WalkGround& ground, const std::vector<Station>& stations) {
+  const FloorGraph& graph = ground.graph;
   std::vector<WayPoint> way;
   const auto add_point = [&](glm::dvec2 at, std::int32_t place, bool station) {
     const StandingPlace& p = graph.places[place];
@@ -94,21 +132,14 @@ std::vector<WayPoint> walk_stations(const WalkGround& ground, const std::vector<
     return glm::dvec2(foot.x, foot.z);
   };
   add_point(middle(ground.places[stations[0].local]), ground.places[stations[0].local], true);
-  for (std::size_t at = 0;;) {
-    std::size_t next = at;
-    for (std::size_t s = 0; s < stations.size(); ++s) {
-      const float cost = stations[at].tree.cost[stations[s].local];
-      if (visited[s] || cost == HUGE_VALF) continue;
-      if (next == at || cost < stations[at].tree.cost[stations[next].local]) next = s;
-    }
-    if (next == at) return way;
-    visited[next] = true;
+  const std::vector<std::size_t> order = order_stations(stations);
+  for (std::size_t leg = 1; leg < order.size(); ++leg) {
+    const WalkTree& tree = stations[order[leg - 1]].tree;
     std::vector<std::int32_t> places;
-    for (std::int32_t i = stations[next].local; i >= 0; i = stations[at].tree.previous[i]) places.push_back(ground.places[i]);
+    for (std::int32_t i = stations[order[leg]].local; i >= 0; i = tree.previous[i]) places.push_back(ground.places[i]);
     std::reverse(places.begin(), places.end());
     const std::vector<std::int32_t> corners = straightened(graph, places);
     for (std::size_t c = 1; c < corners.size(); ++c) {
-      // Straight in plan, following the floor: one point for every column crossed.
       const glm::dvec2 a = middle(corners[c - 1]);
       const glm::dvec2 b = middle(corners[c]);
       std::vector<std::int32_t> crossed = straight_walk(graph, corners[c - 1], corners[c], 0.0f);
@@ -118,8 +149,8 @@ std::vector<WayPoint> walk_stations(const WalkGround& ground, const std::vector<
         add_point(p, crossed[k], c + 1 == corners.size() && k + 1 == crossed.size());
       }
     }
-    at = next;
   }
+  return way;
 }
 
 struct Sample {
