@@ -4,6 +4,8 @@
 #include <volk.h>
 
 #include <cstddef>
+#include <cstdint>
+#include <glm/glm.hpp>
 #include <span>
 #include <utility>
 
@@ -58,5 +60,10 @@ class Buffer {
   VkDeviceAddress address_ = 0;
   std::byte* mapped_ = nullptr;
 };
+
+// An address as shaders take it: low word, high word.
+inline glm::uvec2 address_words(VkDeviceAddress address) {
+  return {static_cast<std::uint32_t>(address), static_cast<std::uint32_t>(address >> 32)};
+}
 
 }  // namespace probewalk

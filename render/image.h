@@ -44,8 +44,14 @@ class Image {
   ImageOptions options_;
 };
 
-// Layout transition of all layers of a colour image that waits for, and is waited for by, everything: for set-up and
-// read-back, not for frames.
+// A view of one layer (VK_IMAGE_VIEW_TYPE_2D). The caller destroys it.
+VkImageView make_layer_view(const Device& device, VkImage image, VkFormat format, std::uint32_t layer);
+
+// A barrier on all layers of a colour image, stages and accesses still to be filled in; and its recording.
+VkImageMemoryBarrier2 colour_barrier(VkImage image, VkImageLayout from, VkImageLayout to);
+void pipeline_barrier(VkCommandBuffer commands, const VkImageMemoryBarrier2& barrier);
+
+// Layout transition that waits for, and is waited for by, everything: for set-up and read-back, not for frames.
 void transition(VkCommandBuffer commands, VkImage image, VkImageLayout from, VkImageLayout to);
 
 }  // namespace probewalk

@@ -4,7 +4,6 @@
 
 #include <volk.h>
 
-#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -54,16 +53,18 @@ class ProbeStore {
   // of bytes that `commands` copies (0: nothing was recorded).
   std::uint64_t begin_frame(VkCommandBuffer commands, std::uint32_t slot, std::uint64_t frame,
                             std::uint64_t completed_frame);
+  // Blocks until everything handed in is on the device and in the tables of all slots. No frame may be in flight.
+  void settle();
   // What the frame in `slot` traces against.
   const GridConstants& grid(std::uint32_t slot) const;
 
   // Any thread.
-  bool idle() const;                                    // everything handed in has arrived and shows
-  int level_shown(std::uint32_t room) const;            // as of the last begin_frame; -1 = none
-  bool is_resident(std::uint32_t room, std::uint32_t level) const;  // shown, or finer than needed and ready
-  std::uint64_t device_bytes() const;                   // of probe data, retired ones included until freed
-  std::uint32_t queue_depth() const;                    // uploads that wait for the queue
-  std::uint64_t bytes_uploaded() const;                 // since construction
+  bool idle() const;  // everything handed in has arrived and shows
+  int level_shown(std::uint32_t room) const;                        // as of the last begin_frame; -1 = none
+  bool is_resident(std::uint32_t room, std::uint32_t level) const;  // all of it is on the device
+  std::uint64_t device_bytes() const;    // of probe data, what is retired but not yet freed included
+  std::uint32_t queue_depth() const;     // uploads that wait for their copies
+  std::uint64_t bytes_uploaded() const;  // since construction
 
  private:
   struct Impl;

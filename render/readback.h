@@ -5,7 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
+#include <glm/glm.hpp>
 #include <vector>
 
 #include "content/image/image.h"
@@ -13,9 +13,6 @@
 #include "render/image.h"
 
 namespace probewalk {
-
-// Runs commands on the queue at once and waits for them.
-void run_commands(const Device& device, const std::function<void(VkCommandBuffer)>& record);
 
 // Texels of all layers, layer by layer, rows from the top, tightly packed. The image must have been created with
 // VK_IMAGE_USAGE_TRANSFER_SRC_BIT, is in `layout` and is left in it; all work on it has been submitted.

@@ -18,7 +18,10 @@ class RetirementQueue {
   void release(std::uint64_t completed_frame) {
     while (!retired_.empty() && retired_.front().first <= completed_frame) retired_.pop_front();
   }
-  bool empty() const { return retired_.empty(); }
+  template <typename Visitor>
+  void for_each(Visitor visit) const {
+    for (const auto& [frame, resource] : retired_) visit(resource);
+  }
 
  private:
   std::deque<std::pair<std::uint64_t, Resource>> retired_;

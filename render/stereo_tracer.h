@@ -7,6 +7,7 @@
 
 #include "render/device.h"
 #include "render/image.h"
+#include "render/pipeline.h"
 
 namespace probewalk {
 
@@ -22,9 +23,6 @@ inline constexpr float kMissDistance_m = 1e30f;
 class StereoTracer {
  public:
   StereoTracer(const Device& device, const TracerOptions& options);
-  ~StereoTracer();
-  StereoTracer(const StereoTracer&) = delete;
-  StereoTracer& operator=(const StereoTracer&) = delete;
 
   // `frame` is the device address of a FrameConstants whose size and view count are the options'; its contents are read
   // when the commands run. Leaves the images in VK_IMAGE_LAYOUT_GENERAL, visible to fragment shaders and copies.
@@ -34,17 +32,15 @@ class StereoTracer {
   // One layer a view.
   const Image& radiance() const { return radiance_; }  // RGBA16F, linear, times radiance_scale; alpha 1
   const Image& distance() const { return distance_; }  // R32F, metres along the ray; kMissDistance_m = miss
-  const Image& aov() const { return aov_; }  // RGBA32UI: class, probe (0xffffffff = none), look-ups, tries | attribute reads << 16
+  // RGBA32UI: class, probe (0xffffffff = none), look-ups, tries | attribute reads << 16. One texel without options().aov.
+  const Image& aov() const { return aov_; }
 
  private:
-  const Device& device_;
   TracerOptions options_;
+  std::uint32_t interleave_;  // see kInterleave in trace_stereo.comp
   Image radiance_, distance_, aov_;
-  VkDescriptorSetLayout set_layout_ = VK_NULL_HANDLE;
-  VkDescriptorPool pool_ = VK_NULL_HANDLE;
-  VkDescriptorSet set_ = VK_NULL_HANDLE;
-  VkPipelineLayout layout_ = VK_NULL_HANDLE;
-  VkPipeline pipeline_ = VK_NULL_HANDLE;
+  StorageImageSet images_;
+  Pipeline pipeline_;
 };
 
 }  // namespace probewalk

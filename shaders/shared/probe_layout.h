@@ -26,6 +26,8 @@ PW_SHARED_BEGIN
 // Largest slope of a cut triangle's plane, as a fraction of w a cell step. Beyond it a vertex's normal extrapolates
 // worse than a flat piece does (design: tracer, 3.1).
 PW_CONSTANT float kSlopeClamp = 0.05f;
+// kSlopeClamp / 32767, one snorm16 step. Written out: GLSL compilers fold constants in double, C++ in float.
+PW_CONSTANT float kSlopeStep = 1.52592547e-6f;
 // A cut cell's maximum counts this much more, so that no extended piece sticks out of its pyramid node.
 PW_CONSTANT float kCutExtension = 1.1001f;
 // Node level at which a walk starts; 3 to 5 are within noise of one another (design: tracer, 3.1).

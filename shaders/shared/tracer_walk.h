@@ -75,7 +75,7 @@ PW_FUNCTION bool meet_piece(OctantSegment s, real t_start, real texel, bool cut,
 
 PW_FUNCTION real2 unpack_slopes(pw_uint word) {
   int x = int(word << 16) >> 16, y = int(word) >> 16;
-  return real2(real(x), real(y)) * real(kSlopeClamp / 32767.0f);
+  return real2(real(x), real(y)) * real(kSlopeStep);
 }
 
 // Fraction number k of a cut record: where along its edge the surface ends.

@@ -1,0 +1,42 @@
+// What the renderer needs of a Vulkan device, and what a given device lacks of it.
+#pragma once
+
+#include <volk.h>
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "render/device.h"
+
+namespace probewalk {
+
+// The features that are switched on, chained from `head`. Not movable: the chain holds addresses.
+struct RequiredFeatures {
+  RequiredFeatures();
+  RequiredFeatures(const RequiredFeatures&) = delete;
+  RequiredFeatures& operator=(const RequiredFeatures&) = delete;
+
+  VkPhysicalDeviceVulkan13Features vulkan13{};
+  VkPhysicalDeviceVulkan12Features vulkan12{};
+  VkPhysicalDeviceFeatures2 head{};
+};
+
+// Whether a queue family can present to the caller's surface; empty = no matter.
+using CanPresent = std::function<bool(std::uint32_t family)>;
+
+// A family with graphics and compute (and presentation), if any.
+std::optional<std::uint32_t> find_queue_family(VkPhysicalDevice device, const CanPresent& can_present);
+
+bool has_extension(VkPhysicalDevice device, const char* name);
+
+// Describes the device; `suitable` and `missing` are judged with these extensions and presentation in addition.
+DeviceInfo describe_device(VkPhysicalDevice device, const std::vector<std::string>& extensions,
+                           const CanPresent& can_present);
+
+// Orders devices: discrete first, then integrated, virtual, others, software last.
+int device_rank(VkPhysicalDevice device);
+
+}  // namespace probewalk

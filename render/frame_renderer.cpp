@@ -1,0 +1,274 @@
+#include "render/frame_renderer.h"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <deque>
+#include <stdexcept>
+#include <vector>
+
+#include "render/buffer.h"
+#include "render/check.h"
+#include "render/resolve.h"
+
+namespace probewalk {
+namespace {
+
+// Each timed pass has a command buffer of its own (see PassTimer).
+enum Pass : std::uint32_t { kTrace, kResolve, kPasses };
+constexpr std::uint32_t kUploadCommands = kPasses;
+constexpr std::uint32_t kCommandBuffers = kPasses + 1;
+
+constexpr std::size_t kTimesKept = 64;
+
+// What one frame in flight uses.
+struct FrameSlot {
+  explicit FrameSlot(const Device& owner)
+      : device(owner.handle()), constants(owner, sizeof(FrameConstants), BufferMemory::kShared), timer(owner, kPasses) {
+    VkCommandPoolCreateInfo pool_info{VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO};
+    pool_info.queueFamilyIndex = owner.queue_family();
+    check(vkCreateCommandPool(device, &pool_info, nullptr, &pool), "vkCreateCommandPool");
+    VkCommandBufferAllocateInfo allocate{VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO};
+    allocate.commandPool = pool;
+    allocate.level = VK_COMMAND_BUFFER_LEVEL_PRIMARY;
+    allocate.commandBufferCount = kCommandBuffers;
+    check(vkAllocateCommandBuffers(device, &allocate, commands.data()), "vkAllocateCommandBuffers");
+  }
+  ~FrameSlot() {
+    release_views();
+    vkDestroyCommandPool(device, pool, nullptr);
+  }
+  FrameSlot(const FrameSlot&) = delete;
+  FrameSlot& operator=(const FrameSlot&) = delete;
+
+  void release_views() {
+    for (VkImageView view : layer_views) vkDestroyImageView(device, view, nullptr);
+    layer_views.clear();
+  }
+
+  VkDevice device;
+  VkCommandPool pool = VK_NULL_HANDLE;
+  std::array<VkCommandBuffer, kCommandBuffers> commands{};
+  Buffer constants;  // FrameConstants
+  PassTimer timer;
+  std::vector<VkImageView> layer_views;  // of the target
+  std::uint64_t frame = 0;          // submitted last from this slot
+  std::uint64_t last_work = 0;      // timeline value of the slot's last submit
+  bool has_untaken_times = false;
+};
+
+void begin_commands(VkCommandBuffer commands) {
+  VkCommandBufferBeginInfo begin{VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
+  begin.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
+  check(vkBeginCommandBuffer(commands, &begin), "vkBeginCommandBuffer");
+}
+
+VkSemaphore make_timeline(const Device& device) {
+  VkSemaphoreTypeCreateInfo type{VK_STRUCTURE_TYPE_SEMAPHORE_TYPE_CREATE_INFO};
+  type.semaphoreType = VK_SEMAPHORE_TYPE_TIMELINE;
+  const VkSemaphoreCreateInfo info{VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO, &type, 0};
+  VkSemaphore semaphore = VK_NULL_HANDLE;
+  check(vkCreateSemaphore(device.handle(), &info, nullptr, &semaphore), "vkCreateSemaphore");
+  return semaphore;
+}
+
+VkSemaphoreSubmitInfo semaphore_info(VkSemaphore semaphore, std::uint64_t value, VkPipelineStageFlags2 stages) {
+  VkSemaphoreSubmitInfo info{VK_STRUCTURE_TYPE_SEMAPHORE_SUBMIT_INFO};
+  info.semaphore = semaphore;
+  info.value = value;
+  info.stageMask = stages;
+  return info;
+}
+
+}  // namespace
+
+struct FrameRenderer::Impl {
+  Impl(const Device& owner, ProbeStore& probes, const FrameRendererOptions& dials)
+      : device(owner),
+        store(probes),
+        options(dials),
+        tracer(owner, dials.tracer),
+        resolve(owner, tracer.radiance(), dials.target_format),
+        clock(owner),
+        timeline(make_timeline(owner)) {
+    for (std::uint32_t i = 0; i < kFrameSlots; ++i) slots.emplace_back(owner);
+  }
+  ~Impl() {
+    // Not wait_for: a lost device must not throw here.
+    vkDeviceWaitIdle(device.handle());
+    slots.clear();
+    vkDestroySemaphore(device.handle(), timeline, nullptr);
+  }
+
+  std::uint32_t slot_index() const { return static_cast<std::uint32_t>(next_frame % kFrameSlots); }
+  FrameSlot& slot() { return slots[slot_index()]; }
+
+  void wait_for(std::uint64_t value) const {
+    VkSemaphoreWaitInfo info{VK_STRUCTURE_TYPE_SEMAPHORE_WAIT_INFO};
+    info.semaphoreCount = 1;
+    info.pSemaphores = &timeline;
+    info.pValues = &value;
+    check(vkWaitSemaphores(device.handle(), &info, UINT64_MAX), "vkWaitSemaphores");
+  }
+
+  // Highest frame that is known to have finished.
+  std::uint64_t completed_frame() const {
+    std::uint64_t done = 0;
+    check(vkGetSemaphoreCounterValue(device.handle(), timeline, &done), "vkGetSemaphoreCounterValue");
+    std::uint64_t frame = 0;
+    for (const FrameSlot& each : slots) {
+      if (each.last_work <= done) frame = std::max(frame, each.frame);
+    }
+    return frame;
+  }
+
+  void submit(std::span<const VkCommandBuffer> buffers, VkSemaphore wait_before, VkSemaphore signal_after) {
+    std::array<VkCommandBufferSubmitInfo, kCommandBuffers> infos{};
+    for (std::size_t i = 0; i < buffers.size(); ++i) {
+      infos[i] = {VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO, nullptr, buffers[i], 0};
+    }
+    const VkSemaphoreSubmitInfo wait =
+        semaphore_info(wait_before, 0, VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT);
+    const std::array signals{semaphore_info(timeline, work + 1, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT),
+                             semaphore_info(signal_after, 0, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT)};
+    VkSubmitInfo2 info{VK_STRUCTURE_TYPE_SUBMIT_INFO_2};
+    info.waitSemaphoreInfoCount = wait_before != VK_NULL_HANDLE ? 1 : 0;
+    info.pWaitSemaphoreInfos = &wait;
+    info.commandBufferInfoCount = static_cast<std::uint32_t>(buffers.size());
+    info.pCommandBufferInfos = infos.data();
+    info.signalSemaphoreInfoCount = signal_after != VK_NULL_HANDLE ? 2 : 1;
+    info.pSignalSemaphoreInfos = signals.data();
+    device.submit(info, VK_NULL_HANDLE);
+    slot().last_work = ++work;
+  }
+
+  void collect_times() {
+    for (std::uint64_t age = kFrameSlots; age >= 1; --age) {  // the oldest frame first
+      collect_times(slots[(next_frame + kFrameSlots - age) % kFrameSlots]);
+    }
+  }
+
+  void collect_times(FrameSlot& finished) {
+    if (!finished.has_untaken_times) return;
+    const auto trace = finished.timer.read(kTrace, clock);
+    const auto resolved = finished.timer.read(kResolve, clock);
+    if (!trace || !resolved) return;
+    finished.has_untaken_times = false;
+    times.push_back({finished.frame, *trace, *resolved, {trace->begin_ns, resolved->end_ns}, clock.calibrated(),
+                     clock.max_deviation_ns()});
+    if (times.size() > kTimesKept) times.pop_front();
+  }
+
+  const Device& device;
+  ProbeStore& store;
+  const FrameRendererOptions options;
+  const StereoTracer tracer;
+  const Resolve resolve;
+  GpuClock clock;
+  VkSemaphore timeline;
+  std::deque<FrameSlot> slots;
+  std::uint64_t work = 0;  // timeline value of the last submit
+  std::uint64_t next_frame = 1;
+  std::uint64_t bytes_copied = 0;
+  FrameTarget target;
+  bool is_recorded = false, is_written = false;
+  std::deque<FrameGpuTimes> times;
+};
+
+FrameRenderer::FrameRenderer(const Device& device, ProbeStore& store, const FrameRendererOptions& options)
+    : impl_(std::make_unique<Impl>(device, store, options)) {}
+
+FrameRenderer::~FrameRenderer() = default;
+
+void FrameRenderer::record(const FrameTarget& target) {
+  Impl& impl = *impl_;
+  const TracerOptions& tracer = impl.options.tracer;
+  if (target.format != impl.options.target_format || target.layers != tracer.views ||
+      target.extent.width != tracer.extent_px.width || target.extent.height != tracer.extent_px.height) {
+    throw std::logic_error("a frame's target differs from what the renderer was made for");
+  }
+  FrameSlot& slot = impl.slot();
+  impl.wait_for(slot.last_work);
+  impl.collect_times();
+  impl.clock.tick();
+  slot.timer.reset();
+  slot.has_untaken_times = false;
+  slot.release_views();
+  for (std::uint32_t layer = 0; layer < target.layers; ++layer) {
+    slot.layer_views.push_back(make_layer_view(impl.device, target.image, target.format, layer));
+  }
+  check(vkResetCommandPool(impl.device.handle(), slot.pool, 0), "vkResetCommandPool");
+
+  const VkCommandBuffer upload = slot.commands[kUploadCommands];
+  begin_commands(upload);
+  impl.bytes_copied =
+      impl.store.begin_frame(upload, impl.slot_index(), impl.next_frame, impl.completed_frame());
+  check(vkEndCommandBuffer(upload), "vkEndCommandBuffer");
+  // At once: the copies must happen even when the frame is given up before its submit.
+  if (impl.bytes_copied > 0) impl.submit({&upload, 1}, VK_NULL_HANDLE, VK_NULL_HANDLE);
+
+  const VkDeviceAddress constants = slot.constants.address();
+  begin_commands(slot.commands[kTrace]);
+  slot.timer.begin(slot.commands[kTrace], kTrace);
+  impl.tracer.record(slot.commands[kTrace], constants);
+  slot.timer.end(slot.commands[kTrace], kTrace);
+  check(vkEndCommandBuffer(slot.commands[kTrace]), "vkEndCommandBuffer");
+
+  begin_commands(slot.commands[kResolve]);
+  slot.timer.begin(slot.commands[kResolve], kResolve);
+  impl.resolve.record(slot.commands[kResolve], constants, target, slot.layer_views);
+  slot.timer.end(slot.commands[kResolve], kResolve);
+  check(vkEndCommandBuffer(slot.commands[kResolve]), "vkEndCommandBuffer");
+  impl.target = target;
+  impl.is_recorded = true;
+  impl.is_written = false;
+}
+
+void FrameRenderer::write(std::span<const ViewConstants> views, const FrameSettings& settings) {
+  Impl& impl = *impl_;
+  const TracerOptions& tracer = impl.options.tracer;
+  if (!impl.is_recorded || views.size() != tracer.views) {
+    throw std::logic_error("a frame's views are written after record, as many as the renderer was made for");
+  }
+  FrameConstants constants{};
+  constants.grid = impl.store.grid(impl.slot_index());
+  constants.trace = settings.trace;
+  constants.size_px = {static_cast<int>(tracer.extent_px.width), static_cast<int>(tracer.extent_px.height)};
+  constants.view_count = static_cast<int>(views.size());
+  constants.exposure = settings.exposure;
+  constants.fade = settings.fade;
+  constants.frame_index = static_cast<std::uint32_t>(impl.next_frame);
+  std::copy(views.begin(), views.end(), constants.view);
+  const Buffer& buffer = impl.slot().constants;
+  std::memcpy(buffer.mapped(), &constants, sizeof(constants));
+  buffer.flush();
+  impl.is_written = true;
+}
+
+std::uint64_t FrameRenderer::submit() {
+  Impl& impl = *impl_;
+  if (!impl.is_recorded || !impl.is_written) throw std::logic_error("a frame is submitted after record and write");
+  FrameSlot& slot = impl.slot();
+  impl.submit({slot.commands.data(), kPasses}, impl.target.wait_before, impl.target.signal_after);
+  slot.frame = impl.next_frame;
+  slot.has_untaken_times = true;
+  impl.is_recorded = impl.is_written = false;
+  return impl.next_frame++;
+}
+
+std::uint64_t FrameRenderer::bytes_copied() const { return impl_->bytes_copied; }
+
+std::optional<FrameGpuTimes> FrameRenderer::take_times() {
+  Impl& impl = *impl_;
+  impl.collect_times();
+  if (impl.times.empty()) return std::nullopt;
+  const FrameGpuTimes oldest = impl.times.front();
+  impl.times.pop_front();
+  return oldest;
+}
+
+void FrameRenderer::wait() { impl_->wait_for(impl_->work); }
+
+const StereoTracer& FrameRenderer::tracer() const { return impl_->tracer; }
+
+}  // namespace probewalk

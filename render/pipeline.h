@@ -1,0 +1,67 @@
+// Pipelines and what they bind. All of ours read their constants through one device address in the push constants.
+#pragma once
+
+#include <volk.h>
+
+#include <cstdint>
+#include <initializer_list>
+#include <span>
+#include <utility>
+
+#include "render/device.h"
+
+namespace probewalk {
+
+// A set of storage images in VK_IMAGE_LAYOUT_GENERAL, bindings 0, 1, ... in the order given.
+class StorageImageSet {
+ public:
+  StorageImageSet(const Device& device, VkShaderStageFlags stages, std::initializer_list<VkImageView> images);
+  ~StorageImageSet();
+  StorageImageSet(const StorageImageSet&) = delete;
+  StorageImageSet& operator=(const StorageImageSet&) = delete;
+
+  VkDescriptorSetLayout layout() const { return layout_; }
+  VkDescriptorSet set() const { return set_; }
+
+ private:
+  VkDevice device_;
+  VkDescriptorSetLayout layout_ = VK_NULL_HANDLE;
+  VkDescriptorPool pool_ = VK_NULL_HANDLE;
+  VkDescriptorSet set_ = VK_NULL_HANDLE;
+};
+
+// What every shader of ours is given directly.
+struct PushConstants {
+  VkDeviceAddress constants = 0;  // where the rest lies
+  std::uint32_t view = 0;         // that a draw is for
+  std::uint32_t reserved = 0;
+};
+
+// Owns a pipeline and its layout.
+class Pipeline {
+ public:
+  // `constants` are the specialisation constants 0, 1, ...
+  static Pipeline compute(const Device& device, const StorageImageSet* images, std::span<const std::uint32_t> spirv,
+                          std::initializer_list<std::uint32_t> constants);
+  // A full-screen triangle onto one colour attachment, without blending.
+  static Pipeline full_screen(const Device& device, const StorageImageSet& images,
+                              std::span<const std::uint32_t> vertex_spirv,
+                              std::span<const std::uint32_t> fragment_spirv, VkFormat format);
+  ~Pipeline();
+  Pipeline(Pipeline&& other) noexcept;
+  Pipeline& operator=(Pipeline&&) = delete;
+
+  void bind(VkCommandBuffer commands, const StorageImageSet* images, const PushConstants& push) const;
+
+ private:
+  Pipeline(const Device& device, const StorageImageSet* images, VkPipelineBindPoint bind_point,
+           VkShaderStageFlags stages);
+
+  VkDevice device_;
+  VkPipelineBindPoint bind_point_;
+  VkShaderStageFlags stages_;
+  VkPipelineLayout layout_ = VK_NULL_HANDLE;
+  VkPipeline pipeline_ = VK_NULL_HANDLE;
+};
+
+}  // namespace probewalk

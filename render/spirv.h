@@ -1,0 +1,14 @@
+// The shaders, as shaders/CMakeLists.txt embeds them.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+namespace probewalk::spirv {
+
+extern const std::span<const std::uint32_t> k_trace_stereo_comp;
+extern const std::span<const std::uint32_t> k_trace_rays_comp;
+extern const std::span<const std::uint32_t> k_resolve_vert;
+extern const std::span<const std::uint32_t> k_resolve_frag;
+
+}  // namespace probewalk::spirv

@@ -1,0 +1,78 @@
+#include "render/stereo_tracer.h"
+
+#include <algorithm>
+#include <numeric>
+#include <thread>
+
+#include "render/one_shot.h"
+#include "render/spirv.h"
+
+namespace probewalk {
+namespace {
+
+constexpr std::uint32_t kTile = 8;  // local size of trace_stereo.comp, both ways
+
+// A software device gives each of its threads one contiguous part of a dispatch, one of which holds the costly pixels:
+// rows in turn made cluttered scenes 1.75 times as fast on llvmpipe.
+std::uint32_t choose_interleave(const Device& device) {
+  return device.info().is_software ? std::clamp(std::thread::hardware_concurrency(), 1u, 64u) : 1u;
+}
+
+// Rows of tiles a view, made up so that the interleave divides those of all views.
+std::uint32_t tile_rows(const TracerOptions& options, std::uint32_t interleave) {
+  const std::uint32_t rows = (options.extent_px.height + kTile - 1) / kTile;
+  const std::uint32_t step = interleave / std::gcd(interleave, options.views);
+  return (rows + step - 1) / step * step;
+}
+
+Image make_output(const Device& device, const TracerOptions& options, VkFormat format) {
+  return Image(device, {format, options.extent_px, options.views,
+                        VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT});
+}
+
+TracerOptions one_texel(const TracerOptions& options) { return {{1, 1}, options.views, options.aov}; }
+
+}  // namespace
+
+StereoTracer::StereoTracer(const Device& device, const TracerOptions& options)
+    : options_(options),
+      interleave_(choose_interleave(device)),
+      radiance_(make_output(device, options, VK_FORMAT_R16G16B16A16_SFLOAT)),
+      distance_(make_output(device, options, VK_FORMAT_R32_SFLOAT)),
+      aov_(make_output(device, options.aov ? options : one_texel(options), VK_FORMAT_R32G32B32A32_UINT)),
+      images_(device, VK_SHADER_STAGE_COMPUTE_BIT, {radiance_.view(), distance_.view(), aov_.view()}),
+      pipeline_(Pipeline::compute(device, &images_, spirv::k_trace_stereo_comp,
+                                  {options.aov ? VK_TRUE : VK_FALSE, interleave_})) {
+  // The images stay in the general layout for good.
+  run_commands(device, [&](VkCommandBuffer commands) {
+    for (const Image* image : {&radiance_, &distance_, &aov_}) {
+      transition(commands, image->handle(), VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL);
+    }
+  });
+}
+
+void StereoTracer::record(VkCommandBuffer commands, VkDeviceAddress frame) const {
+  VkMemoryBarrier2 barrier{VK_STRUCTURE_TYPE_MEMORY_BARRIER_2};
+  VkDependencyInfo dependency{VK_STRUCTURE_TYPE_DEPENDENCY_INFO};
+  dependency.memoryBarrierCount = 1;
+  dependency.pMemoryBarriers = &barrier;
+  // Whoever reads or wrote the last frame's images comes first.
+  barrier.srcStageMask = VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT | VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT |
+                         VK_PIPELINE_STAGE_2_COPY_BIT;
+  barrier.srcAccessMask = VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT;
+  barrier.dstStageMask = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
+  barrier.dstAccessMask = VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT;
+  vkCmdPipelineBarrier2(commands, &dependency);
+
+  pipeline_.bind(commands, &images_, {frame});
+  const std::uint32_t columns = (options_.extent_px.width + kTile - 1) / kTile;
+  vkCmdDispatch(commands, columns, tile_rows(options_, interleave_), options_.views);
+
+  barrier.srcStageMask = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
+  barrier.srcAccessMask = VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT;
+  barrier.dstStageMask = VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT | VK_PIPELINE_STAGE_2_COPY_BIT;
+  barrier.dstAccessMask = VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_TRANSFER_READ_BIT;
+  vkCmdPipelineBarrier2(commands, &dependency);
+}
+
+}  // namespace probewalk

@@ -1,0 +1,3 @@
+// The one place where the Vulkan Memory Allocator is compiled.
+#define VMA_IMPLEMENTATION
+#include "render/vma.h"

@@ -1,0 +1,206 @@
+#include "render/frame_renderer.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <ctime>
+#include <thread>
+
+#include "content/probe/tracer_f32.h"
+#include "gpu_test.h"
+#include "probe_room.h"
+#include "render/readback.h"
+#include "render/view.h"
+#include "shaders/shared/display_transform.h"
+#include "shaders/shared/view_ray.h"
+
+namespace probewalk {
+namespace {
+
+constexpr VkExtent2D kExtent{100, 70};  // no multiple of a tile
+constexpr VkFormat kFormat = VK_FORMAT_R8G8B8A8_SRGB;
+
+std::int64_t monotonic_ns() {
+  timespec now{};
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return std::int64_t{1000000000} * now.tv_sec + now.tv_nsec;
+}
+
+class FrameRendererTest : public test::GpuTest {
+ protected:
+  FrameRendererTest() {
+    store.upload(room.upload());
+    settings.trace = default_dials(test::kRadianceScale);
+  }
+
+  static FrameRendererOptions options(std::uint32_t views, bool aov = true) {
+    return {.tracer = {.extent_px = kExtent, .views = views, .aov = aov}, .target_format = kFormat};
+  }
+  Image make_target(std::uint32_t views, VkFormat format = kFormat) const {
+    return Image(device, {format, kExtent, views, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT});
+  }
+  static FrameTarget target_of(const Image& image) {
+    FrameTarget target;
+    target.image = image.handle();
+    target.format = image.options().format;
+    target.extent = image.options().extent_px;
+    target.layers = image.options().layers;
+    target.final_layout = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
+    return target;
+  }
+  static std::vector<ViewConstants> views_at(glm::dvec3 head_m, std::uint32_t count) {
+    std::vector<ViewConstants> views;
+    const glm::dquat turned = glm::angleAxis(0.4, glm::dvec3(0, 1, 0)) * glm::angleAxis(-0.2, glm::dvec3(1, 0, 0));
+    for (std::uint32_t k = 0; k < count; ++k) {
+      const ViewFov fov{-0.7f, 0.6f + 0.05f * static_cast<float>(k), 0.5f, -0.55f};
+      views.push_back(view_constants(head_m + glm::dvec3(0.063 * k, 0, 0), turned, fov, static_cast<int>(kExtent.width)));
+    }
+    return views;
+  }
+  // One frame, waited for.
+  std::vector<ImageRgb8> draw(FrameRenderer& renderer, const Image& image, const std::vector<ViewConstants>& views) {
+    renderer.record(target_of(image));
+    renderer.write(views, settings);
+    renderer.submit();
+    renderer.wait();
+    return read_pictures(device, image.handle(), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, image.options().format, kExtent,
+                         image.options().layers);
+  }
+
+  const test::ProbeRoom room;
+  ProbeStore store{device, room.grid, room.probe_count(), {.frame_slots = kFrameSlots}};
+  FrameSettings settings;
+};
+
+TEST_F(FrameRendererTest, TracesEveryPixelOfEveryViewAsTheCppTracer) {
+  for (const std::uint32_t count : {1u, 2u, 4u}) {
+    FrameRenderer renderer(device, store, options(count));
+    const Image image = make_target(count);
+    const auto views = views_at({0.3, 1.5, 0.9}, count);
+    draw(renderer, image, views);
+    const auto distances = read_floats(device, renderer.tracer().distance());
+    const auto aov = read_uints(device, renderer.tracer().aov());
+    const ProbeSet set = room.on_cpu();
+    int differ = 0;
+    for (std::uint32_t view = 0; view < count; ++view) {
+      for (int y = 0; y < static_cast<int>(kExtent.height); ++y) {
+        for (int x = 0; x < static_cast<int>(kExtent.width); ++x) {
+          const glm::vec3 d = view_ray(views[view], {x, y}, {kExtent.width, kExtent.height});
+          const auto expected = f32::trace_ray(set.grid(), settings.trace, views[view].origin_hi_m,
+                                               views[view].origin_lo_m, d, kStartLevel);
+          const std::size_t at = static_cast<std::size_t>(y) * kExtent.width + static_cast<std::size_t>(x);
+          differ += distances[view][at] != expected.t || aov[view][at].x != static_cast<unsigned>(expected.cls) ||
+                    aov[view][at].y != static_cast<unsigned>(expected.probe) || aov[view][at].z != expected.lookups;
+        }
+      }
+    }
+    EXPECT_EQ(differ, 0) << count << " views";
+  }
+}
+
+TEST_F(FrameRendererTest, SamePoseGivesTheSamePicture) {
+  FrameRenderer renderer(device, store, options(2, false));
+  const Image image = make_target(2);
+  const auto views = views_at({0.0, 1.4, 0.5}, 2);
+  const auto first = draw(renderer, image, views);
+  draw(renderer, image, views_at({-1.0, 1.4, 0.5}, 2));
+  const auto again = draw(renderer, image, views);
+  for (int view = 0; view < 2; ++view) EXPECT_EQ(first[view].rgb, again[view].rgb);
+  EXPECT_NE(first[0].rgb, first[1].rgb) << "two eyes see two pictures";
+}
+
+TEST_F(FrameRendererTest, ShowsRadianceThroughExposureCurveAndEncoding) {
+  settings.exposure = 0.7f;
+  for (const VkFormat format : {VK_FORMAT_R8G8B8A8_SRGB, VK_FORMAT_B8G8R8A8_SRGB}) {
+    FrameRendererOptions dials = options(1);
+    dials.target_format = format;
+    FrameRenderer renderer(device, store, dials);
+    const Image image = make_target(1, format);
+    const auto picture = draw(renderer, image, views_at({0.0, 1.4, 0.5}, 1)).front();
+    const auto radiance = read_radiance(device, renderer.tracer().radiance()).front();
+    double sum = 0.0;
+    for (std::size_t i = 0; i < radiance.rgb.size(); ++i) {
+      const glm::vec3 shown = tone_curve(radiance.rgb[i] * (settings.exposure / test::kRadianceScale));
+      for (int c = 0; c < 3; ++c) {
+        const float expected = 255.0f * srgb_encode(shown[c]);
+        const float error = static_cast<float>(picture.rgb[3 * i + static_cast<std::size_t>(c)]) - expected;
+        ASSERT_LT(std::abs(error), 1.01f);
+        sum += static_cast<double>(error);
+      }
+    }
+    EXPECT_LT(std::abs(sum / static_cast<double>(3 * radiance.rgb.size())), 0.02) << "the dither is fair";
+  }
+}
+
+TEST_F(FrameRendererTest, FadesToBlack) {
+  FrameRenderer renderer(device, store, options(1));
+  const Image image = make_target(1);
+  settings.fade = 1.0f;
+  const auto picture = draw(renderer, image, views_at({0.0, 1.4, 0.5}, 1)).front();
+  for (const std::uint8_t value : picture.rgb) ASSERT_EQ(value, 0);
+}
+
+TEST_F(FrameRendererTest, TheLastPoseWrittenBeforeSubmitIsTheOneDrawn) {
+  FrameRenderer renderer(device, store, options(1));
+  const Image image = make_target(1);
+  const auto expected = draw(renderer, image, views_at({0.5, 1.5, 0.0}, 1)).front();
+  renderer.record(target_of(image));
+  renderer.write(views_at({-2.0, 1.0, 1.0}, 1), settings);
+  renderer.write(views_at({0.5, 1.5, 0.0}, 1), settings);
+  renderer.submit();
+  renderer.wait();
+  const auto late = read_pictures(device, image.handle(), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, kFormat, kExtent, 1);
+  EXPECT_EQ(late.front().rgb, expected.rgb);
+}
+
+TEST_F(FrameRendererTest, GivesDeviceTimesOnTheMonotonicClock) {
+  FrameRenderer renderer(device, store, options(2, false));
+  const Image image = make_target(2);
+  EXPECT_FALSE(renderer.take_times().has_value());
+  for (std::uint64_t frame = 1; frame <= 5; ++frame) {
+    const std::int64_t before = monotonic_ns();
+    draw(renderer, image, views_at({0.0, 1.4, 0.5}, 2));
+    const std::int64_t after = monotonic_ns();
+    const auto times = renderer.take_times();
+    ASSERT_TRUE(times.has_value());
+    EXPECT_EQ(times->frame, frame);
+    ASSERT_TRUE(times->calibrated);
+    EXPECT_GE(times->whole.begin_ns, before - times->max_deviation_ns);
+    EXPECT_LE(times->whole.end_ns, after + times->max_deviation_ns);
+    EXPECT_LT(times->trace.begin_ns, times->trace.end_ns);
+    EXPECT_LE(times->trace.end_ns, times->resolve.begin_ns);
+    EXPECT_LT(times->resolve.begin_ns, times->resolve.end_ns);
+  }
+  EXPECT_FALSE(renderer.take_times().has_value());
+}
+
+TEST_F(FrameRendererTest, KeepsTwoFramesInFlightWhileRoomsStream) {
+  ProbeStore streaming(device, room.grid, room.probe_count(),
+                       {.frame_slots = kFrameSlots, .upload_bytes_per_frame = 100000, .always_stage = true});
+  FrameRenderer renderer(device, streaming, options(2, false));
+  const Image image = make_target(2);
+  streaming.upload(room.upload());
+  std::uint64_t times_taken = 0;
+  for (int k = 0; k < 20; ++k) {
+    renderer.record(target_of(image));
+    if (k == 7) renderer.record(target_of(image));  // a frame given up after recording
+    renderer.write(views_at({0.1 * k, 1.4, 0.5}, 2), settings);
+    renderer.submit();
+    if (k == 14) streaming.evict(0, 0);
+    while (const auto times = renderer.take_times()) EXPECT_EQ(times->frame, ++times_taken);
+  }
+  renderer.wait();
+  while (renderer.take_times()) ++times_taken;
+  EXPECT_EQ(times_taken, 20u);
+  EXPECT_EQ(streaming.device_bytes(), 0u);
+}
+
+TEST_F(FrameRendererTest, RefusesATargetItWasNotMadeFor) {
+  FrameRenderer renderer(device, store, options(2));
+  EXPECT_THROW(renderer.record(target_of(make_target(1))), std::logic_error);
+  EXPECT_THROW(renderer.submit(), std::logic_error);
+}
+
+}  // namespace
+}  // namespace probewalk
