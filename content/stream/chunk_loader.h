@@ -1,0 +1,87 @@
+// Loader threads: read a chunk, check its hash, decompress, decode, make the device's words, hand them to the device.
+// The frame thread only asks and polls; it never waits for any of this.
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "content/pack/manifest.h"
+#include "content/probe/device_probe.h"
+#include "content/stream/chunk_source.h"
+#include "content/stream/residency.h"
+
+namespace probewalk {
+
+// The words of one room's probes at one level, ready for the device.
+struct LoadedLevel {
+  std::uint32_t room = 0;
+  std::uint32_t level = 0;
+  std::uint32_t first_probe = 0;  // global index of the room's first probe
+  std::vector<DeviceProbe> probes;
+};
+
+struct LoadResult {
+  LevelKey key;
+  std::string error;  // empty: it arrived. Errors are values here: nothing is thrown across threads
+  std::uint64_t bytes_disk = 0;
+  std::int64_t requested_ns = 0;  // on std::chrono::steady_clock
+  std::int64_t started_ns = 0;
+  std::int64_t finished_ns = 0;
+};
+
+struct LoaderOptions {
+  unsigned threads = 1;
+  std::size_t queue_capacity = 64;
+};
+
+class ChunkLoader {
+ public:
+  // Takes what has been loaded, on a loader thread; what it throws becomes the result's error.
+  using Deliver = std::function<void(LoadedLevel&&)>;
+
+  // `manifest` and `source` outlive the loader.
+  ChunkLoader(const Manifest& manifest, const ChunkSource& source, Deliver deliver, const LoaderOptions& options = {});
+  // Drops what has not begun, waits for what has.
+  ~ChunkLoader();
+  ChunkLoader(const ChunkLoader&) = delete;
+  ChunkLoader& operator=(const ChunkLoader&) = delete;
+
+  // False when the queue is full: ask again later.
+  bool request(LevelKey key);
+  // What has finished since the last call, in the order of finishing. Never blocks.
+  std::vector<LoadResult> poll();
+  // Waits until there is something to poll, at most this long. Not for frame threads.
+  void wait(std::chrono::milliseconds at_most);
+  // Requests that have not finished.
+  std::size_t depth() const { return depth_.load(std::memory_order_relaxed); }
+
+ private:
+  struct Request {
+    LevelKey key;
+    std::int64_t requested_ns = 0;
+  };
+  void work(std::stop_token stop);
+  LoadResult load(const Request& request) const;
+
+  const Manifest& manifest_;
+  const ChunkSource& source_;
+  Deliver deliver_;
+  std::size_t queue_capacity_;
+  std::atomic<std::size_t> depth_{0};
+  std::mutex queue_mutex_;
+  std::condition_variable_any queue_filled_;
+  std::deque<Request> queue_;
+  std::mutex finished_mutex_;
+  std::condition_variable finished_filled_;
+  std::vector<LoadResult> finished_;
+  std::vector<std::jthread> threads_;  // last: they stop before what they use goes
+};
+
+}  // namespace probewalk

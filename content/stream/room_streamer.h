@@ -1,0 +1,85 @@
+// Keeps the right rooms on the device while someone walks: the residency policy and the loader threads put together.
+// One call a frame, which never waits; and the measurements of it.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "content/stream/chunk_loader.h"
+#include "content/stream/residency.h"
+
+namespace probewalk {
+
+struct StreamerOptions {
+  ResidencyOptions residency;
+  LoaderOptions loader;
+  std::uint32_t retire_updates = 3;  // updates until what was evicted is surely freed: frames in flight + 1
+};
+
+struct StreamerStatistics {
+  std::uint64_t bytes_read = 0;
+  std::uint64_t levels_loaded = 0;
+  std::uint64_t rooms_loaded = 0;  // that have had any level
+  std::uint64_t levels_failed = 0;
+  std::uint64_t updates = 0;
+  std::uint64_t coarse_updates = 0;  // the walker's room or one beside it was coarser than wanted
+  std::uint64_t device_bytes = 0;    // resident, loading and not yet freed, by the manifest's sizes
+  std::uint64_t device_bytes_max = 0;
+  std::size_t queue_depth = 0;
+  std::size_t queue_depth_max = 0;
+  std::vector<std::int64_t> need_to_resident_ns;  // one a level: first wanted to handed to the device
+};
+
+class RoomStreamer {
+ public:
+  // Both outlive the streamer. `upload` is called on loader threads, `evict` on the thread of update().
+  // Throws BadUsage when the budget is too small.
+  RoomStreamer(const Manifest& manifest, const ChunkSource& source, ChunkLoader::Deliver upload,
+               std::function<void(LevelKey)> evict, const StreamerOptions& options = {});
+
+  // Takes in what has arrived, decides, asks and evicts. Once a frame; never waits.
+  void update(const Walker& walker);
+  // As of the last update: everything wanted has been handed to the device (what cannot be loaded is not wanted).
+  bool settled() const { return decision_.settled; }
+  const ResidencyDecision& decision() const { return decision_; }
+  const StreamerStatistics& statistics() const { return statistics_; }
+  const LevelStatuses& status() const { return status_; }
+  // One line for each chunk that could not be loaded since the last call.
+  std::vector<std::string> take_errors() { return std::exchange(errors_, {}); }
+
+  // Updates until settled, waiting for the loader in between; for stills and for walks that may take their time.
+  // False when it was not settled in time. `between` is called after each update (to let the device take uploads in).
+  bool settle(const Walker& walker, std::chrono::milliseconds at_most, const std::function<void()>& between = {});
+
+ private:
+  void take_arrivals();
+  void retire();
+  std::uint64_t bytes(LevelKey key) const { return manifest_.rooms[key.room].levels[key.level].bytes_device; }
+
+  struct Retired {
+    std::uint64_t update = 0;  // number of the update that evicted it
+    std::uint64_t bytes = 0;
+  };
+
+  const Manifest& manifest_;
+  std::function<void(LevelKey)> evict_;
+  StreamerOptions options_;
+  Residency residency_;
+  LevelStatuses status_;
+  ResidencyDecision decision_;
+  std::map<LevelKey, std::int64_t> wanted_since_ns_;  // of what is wanted and not resident
+  std::deque<Retired> retired_;
+  std::uint64_t retired_bytes_ = 0;
+  std::vector<bool> room_seen_;
+  StreamerStatistics statistics_;
+  std::vector<std::string> errors_;
+  ChunkLoader loader_;  // last: its threads end first
+};
+
+}  // namespace probewalk
