@@ -5,7 +5,7 @@
 #include <span>
 #include <string>
 
-#include "xr/latency/run_files.h"
+#include "xr/latency/run.h"
 
 namespace probewalk {
 

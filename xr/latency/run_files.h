@@ -6,29 +6,16 @@
 #pragma once
 
 #include <filesystem>
-#include <string>
-#include <vector>
 
-#include "xr/latency/ledger.h"
-#include "xr/latency/run_info.h"
+#include "xr/latency/run.h"
 
 namespace probewalk {
 
-// Makes the directory when it is not there. Throws BadUsage when it cannot be written.
+// Makes the directory when it is not there. Throws BadInput naming the file that cannot be written and why.
 void write_run(const std::filesystem::path& directory, const Ledger& ledger, const RunInfo& info);
 
-// A run as read back from its directory; the summary is derived anew from the frames.
-struct Run {
-  std::string name;  // of the directory
-  RunInfo info;
-  Ledger ledger;
-};
-// Throws BadInput naming the file and the line or key that cannot be used.
+// A run from its frames.csv and summary.json; everything derived is derived anew. Throws BadInput naming the file and
+// the line or key that cannot be used.
 Run read_run(const std::filesystem::path& directory);
-
-// Each alone, for tests and for other writers.
-std::string frames_csv(const Ledger& ledger);
-std::string summary_json(const Ledger& ledger, const RunInfo& info);
-std::string trace_json(const Ledger& ledger);
 
 }  // namespace probewalk

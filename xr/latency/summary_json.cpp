@@ -1,0 +1,185 @@
+#include "xr/latency/summary_json.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "content/error.h"
+
+namespace probewalk {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+template <typename T>
+Json or_null(const std::optional<T>& value) {
+  return value ? Json(*value) : Json();
+}
+Json text_or_null(const std::string& text) { return text.empty() ? Json() : Json(text); }
+
+Json percentiles(const QuantitySummary& quantity) {
+  const auto in_unit = [&](std::int64_t value) {
+    return quantity.scale == 1.0 ? Json(value) : Json(static_cast<double>(value) / quantity.scale);
+  };
+  Json entry = {{"n", quantity.histogram.count()}};
+  for (const PercentileRank& rank : percentile_ranks()) {
+    const auto value = quantity.histogram.percentile(rank);
+    entry[rank.name] = value ? in_unit(*value) : Json();
+  }
+  entry["max"] = quantity.histogram.count() > 0 ? in_unit(quantity.histogram.max()) : Json();
+  return entry;
+}
+
+Json machine_json(const MachineInfo& machine) {
+  return {{"cpu", machine.cpu},
+          {"cores", machine.cores},
+          {"kernel", machine.kernel},
+          {"operating_system", machine.operating_system},
+          {"memory_bytes", machine.memory_bytes},
+          {"governor", text_or_null(machine.governor)}};
+}
+
+Json device_json(const DeviceFacts& device) {
+  return {{"name", device.name},
+          {"driver", device.driver},
+          {"api_version", device.api_version},
+          {"is_software", device.is_software}};
+}
+
+Json streaming_json(const Summary& summary, const StreamingFacts& facts) {
+  Histogram need_to_resident;
+  for (const std::int64_t duration : facts.need_to_resident_ns) need_to_resident.add(duration);
+  std::optional<std::int64_t> p50, p99;
+  for (const PercentileRank& rank : percentile_ranks()) {
+    if (rank.p == 0.5) p50 = need_to_resident.percentile(rank);
+    if (rank.p == 0.99) p99 = need_to_resident.percentile(rank);
+  }
+  return {{"bytes", summary.bytes_uploaded},
+          {"rooms_loaded", facts.rooms_loaded},
+          {"coarse_frame_fraction", or_null(summary.coarse_frame_fraction)},
+          {"need_to_resident_n", need_to_resident.count()},
+          {"need_to_resident_p50_ns", or_null(p50)},
+          {"need_to_resident_p99_ns", or_null(p99)},
+          {"need_to_resident_ns", facts.need_to_resident_ns},
+          {"frame_thread_p99_ns", or_null(summary.frame_thread_p99_ns)},
+          {"device_bytes_max", summary.device_bytes_max},
+          {"device_budget_bytes", facts.device_budget_bytes > 0 ? Json(facts.device_budget_bytes) : Json()}};
+}
+
+Json worst_json(const std::vector<WorstFrame>& worst) {
+  Json list = Json::array();
+  for (const WorstFrame& frame : worst) {
+    list.push_back({{"frame_id", frame.frame_id},
+                    {"frame_ns", frame.frame_ns},
+                    {"missed", frame.missed},
+                    {"stage", text_or_null(frame.stage)},
+                    {"excess_ns", frame.excess_ns},
+                    {"cause", frame.cause}});
+  }
+  return list;
+}
+
+// Reads json[key] into value; a missing key or null leaves it as it was.
+template <typename T>
+void take(const Json& json, const char* key, T& value, const std::string& file) {
+  const auto found = json.find(key);
+  if (found == json.end() || found->is_null()) return;
+  try {
+    value = found->get<T>();
+  } catch (const Json::exception&) {
+    throw BadInput(fmt::format("{}: \"{}\" has the wrong type; give a directory that `probewalk walk --report` wrote",
+                               file, key));
+  }
+}
+
+Json object_in(const Json& json, const char* key) {
+  const auto found = json.find(key);
+  return found != json.end() && found->is_object() ? *found : Json::object();
+}
+
+}  // namespace
+
+std::string summary_json(const Ledger& ledger, const RunInfo& info) {
+  const Summary summary = ledger.summary();
+  Json json = {{"schema", kSummarySchema},
+               {"command", info.command},
+               {"pack", info.pack},
+               {"build", info.build},
+               {"started_utc", info.started_utc},
+               {"machine", machine_json(info.machine)},
+               {"device", device_json(info.device)},
+               {"runtime", text_or_null(info.runtime)},
+               {"display", info.display},
+               {"display_details", info.display_details},
+               {"has_deadlines", ledger.options().has_deadlines},
+               {"eye_width", info.eye_width},
+               {"eye_height", info.eye_height},
+               {"views", info.views},
+               {"method", info.method},
+               {"period_ns", summary.period_ns},
+               {"frames", summary.frames},
+               {"warmup_frames", summary.warmup_frames},
+               {"missed", summary.missed},
+               {"discarded", summary.discarded},
+               {"not_rendered", summary.not_rendered},
+               {"stale_run_max", summary.stale_run_max},
+               {"within_budget_fraction", or_null(summary.within_budget_fraction)},
+               {"clock_error_ns", or_null(summary.clock_error_ns)},
+               {"instrumentation_cost_fraction", or_null(info.instrumentation_cost_fraction)}};
+  Json& table = json["percentiles"] = Json::object();
+  for (const QuantitySummary& quantity : summary.quantities) table[quantity.name] = percentiles(quantity);
+  json["streaming"] = streaming_json(summary, info.streaming);
+  json["worst_frames"] = worst_json(summary.worst);
+  // Names may hold any bytes; what is not UTF-8 is replaced rather than refused.
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+SummaryHead parse_summary_json(std::string_view text, const std::string& file) {
+  const Json json = Json::parse(text, nullptr, false);
+  if (!json.is_object()) throw BadInput(file + ": is no JSON object; give a directory that `probewalk walk --report` wrote");
+  int schema = 0;
+  take(json, "schema", schema, file);
+  if (schema != kSummarySchema) {
+    throw BadInput(fmt::format("{}: schema {} is not the {} that this probewalk reads; use the version that wrote it",
+                               file, schema, kSummarySchema));
+  }
+  SummaryHead head;
+  RunInfo& info = head.info;
+  take(json, "command", info.command, file);
+  take(json, "pack", info.pack, file);
+  take(json, "build", info.build, file);
+  take(json, "started_utc", info.started_utc, file);
+  take(json, "runtime", info.runtime, file);
+  take(json, "display", info.display, file);
+  take(json, "display_details", info.display_details, file);
+  take(json, "eye_width", info.eye_width, file);
+  take(json, "eye_height", info.eye_height, file);
+  take(json, "views", info.views, file);
+  take(json, "method", info.method, file);
+  take(json, "warmup_frames", head.options.warmup_frames, file);
+  take(json, "has_deadlines", head.options.has_deadlines, file);
+  if (double cost = -1.0; json.contains("instrumentation_cost_fraction")) {
+    take(json, "instrumentation_cost_fraction", cost, file);
+    if (cost >= 0.0) info.instrumentation_cost_fraction = cost;
+  }
+  const Json machine = object_in(json, "machine");
+  info.machine = {};
+  take(machine, "cpu", info.machine.cpu, file);
+  take(machine, "cores", info.machine.cores, file);
+  take(machine, "kernel", info.machine.kernel, file);
+  take(machine, "operating_system", info.machine.operating_system, file);
+  take(machine, "memory_bytes", info.machine.memory_bytes, file);
+  take(machine, "governor", info.machine.governor, file);
+  const Json device = object_in(json, "device");
+  take(device, "name", info.device.name, file);
+  take(device, "driver", info.device.driver, file);
+  take(device, "api_version", info.device.api_version, file);
+  take(device, "is_software", info.device.is_software, file);
+  const Json streaming = object_in(json, "streaming");
+  take(streaming, "rooms_loaded", info.streaming.rooms_loaded, file);
+  take(streaming, "device_budget_bytes", info.streaming.device_budget_bytes, file);
+  take(streaming, "need_to_resident_ns", info.streaming.need_to_resident_ns, file);
+  return head;
+}
+
+}  // namespace probewalk
