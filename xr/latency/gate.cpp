@@ -96,16 +96,22 @@ std::vector<std::string> gate_failures(const std::vector<GateCondition>& gate, c
     const QuantitySummary& quantity = summary.quantity(condition.quantity);
     const Histogram& histogram = quantity.histogram;
     const PercentileRank* rank = rank_named(condition.what);
-    const std::optional<std::int64_t> value = rank != nullptr         ? histogram.percentile(*rank)
-                                              : histogram.count() > 0 ? std::optional(histogram.max())
-                                                                      : std::nullopt;
+    std::optional<std::int64_t> value;
+    if (rank != nullptr) {
+      value = histogram.percentile(*rank);
+    } else if (histogram.count() > 0) {
+      value = histogram.max();
+    }
     const bool is_time = quantity.unit == "ns";
     const char* unit = is_time ? "ms" : quantity.unit.c_str();
     const double shown_scale = is_time ? 1e-6 : 1.0;
     if (!value) {
       failures.push_back(fmt::format("{}.{} cannot be judged: n = {} is too small", condition.quantity, condition.what,
                                      histogram.count()));
-    } else if (const double in_unit = static_cast<double>(*value) / quantity.scale; in_unit > condition.limit) {
+      continue;
+    }
+    const double in_unit = static_cast<double>(*value) / quantity.scale;
+    if (in_unit > condition.limit) {
       failures.push_back(fmt::format("{}.{} = {:.4g} {}, more than {:.4g} {}", condition.quantity, condition.what,
                                      in_unit * shown_scale, unit, condition.limit * shown_scale, unit));
     }
