@@ -7,7 +7,7 @@
 #include <iterator>
 #include <vector>
 
-#include "xr/latency/html_text.h"
+#include "xr/latency/report_text.h"
 
 namespace probewalk {
 namespace {
@@ -185,7 +185,7 @@ std::string timeline_svg(const Ledger& ledger, const Summary& summary, const Cha
 }
 
 std::string histogram_svg(const QuantitySummary& quantity, std::int64_t period_ns, const ChartScale& scale) {
-  const Plot plot{360, 190, 40, 10, 30, 36};
+  const Plot plot{360, 200, 40, 10, 34, 36};
   std::string svg = open_svg(plot, "Histogram of " + quantity.name);
   text(svg, "title", plot.x0(), 14, fmt::format("{}  (n = {})", quantity.name, quantity.histogram.count()));
   if (quantity.histogram.count() == 0) {
@@ -241,12 +241,13 @@ std::string histogram_svg(const QuantitySummary& quantity, std::int64_t period_n
   }
   const auto percentile_mark = [&](double p, const char* label, double y) {
     const auto value = quantity.histogram.percentile(p);
-    line(svg, "pmark", x_of_ms(ms(*value)), plot.y0(), x_of_ms(ms(*value)), y + 3);
-    text(svg, x_of_ms(ms(*value)) > plot.x1() - 90 ? "plabel left" : "plabel", x_of_ms(ms(*value)), y,
+    line(svg, "pmark", x_of_ms(ms(*value)), plot.y0(), x_of_ms(ms(*value)), y);
+    const bool leftwards = x_of_ms(ms(*value)) > plot.x1() - 90;
+    text(svg, leftwards ? "plabel left" : "plabel", x_of_ms(ms(*value)) + (leftwards ? -4 : 4), y + 8,
          fmt::format("{} {} ms", label, in_ms(*value)));
   };
-  percentile_mark(0.5, "p50", plot.y1() - 2);
-  if (quantity.histogram.count() >= 100) percentile_mark(0.99, "p99", plot.y1() + 10);
+  percentile_mark(0.5, "p50", plot.y1() - 6);
+  if (quantity.histogram.count() >= 100) percentile_mark(0.99, "p99", plot.y1() + 7);
   return svg + "</svg>";
 }
 

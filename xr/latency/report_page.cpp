@@ -7,7 +7,7 @@
 #include <iterator>
 #include <vector>
 
-#include "xr/latency/html_text.h"
+#include "xr/latency/report_text.h"
 #include "xr/latency/report_charts.h"
 #include "xr/latency/report_style.h"
 

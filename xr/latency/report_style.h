@@ -34,9 +34,9 @@ td.words { overflow-wrap: anywhere; } td .soft { font-size: 13px; }
 svg { width: 100%; height: auto; display: block; background: var(--card); border: 1px solid var(--rule); border-radius: 8px; font: 11px system-ui, sans-serif; }
 svg text { fill: var(--soft); } svg .title { fill: var(--ink); font-size: 12px; font-weight: 600; }
 svg .ylabel { text-anchor: end; } svg .xlabel { text-anchor: middle; } svg .unit { text-anchor: start; } svg .budgetlabel, svg .left { text-anchor: end; }
-svg .budgetlabel { fill: var(--ink); paint-order: stroke; stroke: var(--card); stroke-width: 3px; } svg .plabel { fill: var(--ink); }
+svg .budgetlabel { fill: var(--ink); paint-order: stroke; stroke: var(--card); stroke-width: 3px; } svg .plabel { fill: var(--ink); paint-order: stroke; stroke: var(--card); stroke-width: 3px; }
 svg .grid { stroke: var(--rule); stroke-width: 1; } svg .axis { stroke: var(--soft); stroke-width: 1; }
-svg .budget { stroke: var(--ink); stroke-width: 1.2; stroke-dasharray: 6 4; } svg .pmark { stroke: var(--ink); stroke-width: 1; }
+svg .budget { stroke: var(--ink); stroke-width: 1.2; stroke-dasharray: 6 4; } svg .pmark { stroke: var(--ink); stroke-width: 1; opacity: 0.55; }
 svg .warmup { fill: var(--soft); opacity: 0.13; } svg .framearea { fill: var(--frame-fill); } svg path { fill: none; stroke-width: 1.4; }
 svg path.framearea { fill: var(--frame-fill); } svg .frameline { stroke: var(--frame); } svg .cpuline { stroke: var(--cpu); } svg .gpuline { stroke: var(--gpu); }
 svg .missed, svg .clipped { fill: var(--missed); } svg .discarded { fill: var(--discarded); } svg .bar { fill: var(--frame); } svg .beyond { fill: var(--missed); }

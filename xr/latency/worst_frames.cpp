@@ -7,6 +7,7 @@
 
 #include "xr/latency/histogram.h"
 #include "xr/latency/ledger.h"
+#include "xr/latency/report_text.h"
 
 namespace probewalk {
 namespace {
@@ -68,20 +69,16 @@ std::size_t blame(const StageTimes& excess) {
   return tile;
 }
 
-double ms(std::int64_t ns) { return static_cast<double>(ns) * 1e-6; }
-
 std::string in_words(std::size_t stage, const StageTimes& times, const StageTimes& medians, const FrameRecord& work,
                      const FrameRecord* before) {
   std::string text = stage == kStageCount
                          ? std::string("no stage stands out")
-                         : fmt::format("{} took {:.2f} ms, {:.2f} ms more than its median", kStageNames[stage],
-                                       ms(times[stage]), ms(times[stage] - medians[stage]));
+                         : fmt::format("{} took {} ms, {} ms more than its median", kStageNames[stage],
+                                       in_ms(times[stage]), in_ms(times[stage] - medians[stage]));
   if (stage == kWait) text += ": the runtime held the frame back";
   if (work.pipelines_built > 0) text += fmt::format("; {} pipeline build(s)", work.pipelines_built);
   if (before != nullptr && before->room != work.room) text += fmt::format("; room {} to {}", before->room, work.room);
-  if (work.bytes_uploaded > 0) {
-    text += fmt::format("; {:.2f} MiB uploaded", static_cast<double>(work.bytes_uploaded) / 1048576.0);
-  }
+  if (work.bytes_uploaded > 0) text += fmt::format("; {} uploaded", in_bytes(work.bytes_uploaded));
   if (work.discarded) text += "; discarded by the runtime";
   return text;
 }

@@ -71,7 +71,7 @@ TEST(WorstFrames, BlameStreamingInsideTheCallThatItSlowed) {
     for (std::size_t i = kStalled; i < f.size(); ++i) f[i].room = 4;
   });
   expect_blamed(worst, "streaming");
-  EXPECT_THAT(worst[0].cause, testing::HasSubstr("3.00 MiB uploaded"));
+  EXPECT_THAT(worst[0].cause, testing::HasSubstr("3.0 MiB uploaded"));
   EXPECT_THAT(worst[0].cause, testing::HasSubstr("room 0 to 4"));
 }
 

@@ -1,4 +1,4 @@
-#include "xr/latency/html_text.h"
+#include "xr/latency/report_text.h"
 
 #include <fmt/format.h>
 
