@@ -5,7 +5,7 @@
 namespace probewalk::procedural {
 namespace {
 
-constexpr glm::vec3 kWarm{1.0f, 0.80f, 0.56f};  // about 3000 K
+constexpr glm::vec3 kWarm{1.0f, 0.86f, 0.68f};  // between a bulb and white, as an eye adapted to the room sees it
 
 void add_bulb(const Brush& brush, glm::dvec3 local_m, double candela) {
   ModelLight light;
@@ -51,7 +51,7 @@ void draw_globe_pendant(Brush brush, const Palette& p, double drop, double radiu
   brush.lathe(p.brass, {0, -0.03, 0}, {{0, 0}, {0.05, 0.005}, {0.05, 0.03}}, 16);
   brush.lathe(p.brass, {0, -drop + 0.93 * radius, 0}, {{0.38 * radius, 0}, {0.30 * radius, 0.05}, {0, 0.06}}, 16);
   brush.ball(p.lamp_globe, {0, -drop, 0}, radius, 20);
-  add_bulb(brush, {0, -drop - radius - 0.03, 0}, candela);
+  add_bulb(brush, {0, -drop - radius - 0.22, 0}, candela);  // well below: the globe's shadow on the ceiling stays small
 }
 
 void draw_ceiling_lamp(Brush brush, const Palette& p, double candela) {

@@ -42,8 +42,8 @@ Palette make_palette(Model& model) {
   const TextureId plaster = model.add(plaster_texture());
   p.plaster_white = mix.textured("plaster white", plaster, 2.0, 0.95f, 0xF4F0E8);
   p.plaster_sand = mix.textured("plaster sand", plaster, 2.0, 0.95f, 0xEADFCC);
-  p.plaster_sage = mix.textured("plaster sage", plaster, 2.0, 0.95f, 0xB9C2A9);
-  p.plaster_blue = mix.textured("plaster blue", plaster, 2.0, 0.95f, 0xAFC0C9);
+  p.plaster_sage = mix.textured("plaster sage", plaster, 2.0, 0.95f, 0xC6CEB6);
+  p.plaster_blue = mix.textured("plaster blue", plaster, 2.0, 0.95f, 0xBFCDD4);
   p.plaster_clay = mix.textured("plaster clay", plaster, 2.0, 0.95f, 0xDDB79B);
   p.plaster_outside = mix.textured("plaster outside", plaster, 2.0, 0.95f, 0xEDE6D8);
   p.ceiling = mix.textured("ceiling", plaster, 2.0, 0.95f, 0xF8F6F1);
@@ -109,9 +109,9 @@ Palette make_palette(Model& model) {
   p.toy_yellow = mix.plain("toy yellow", 0xE3B341, 0.6f);
   p.toy_blue = mix.plain("toy blue", 0x3F6FA0, 0.6f);
 
-  p.lamp_shade = mix.glowing("lamp shade", 0xFFE2B8, 420.0f);
-  p.lamp_globe = mix.glowing("lamp globe", 0xFFE8C8, 900.0f);
-  p.ceiling_lamp = mix.glowing("ceiling lamp", 0xFFEED8, 900.0f);
+  p.lamp_shade = mix.glowing("lamp shade", 0xFFE8C8, 480.0f);
+  p.lamp_globe = mix.glowing("lamp globe", 0xFFEBD2, 2600.0f);
+  p.ceiling_lamp = mix.glowing("ceiling lamp", 0xFFEED8, 1500.0f);
   p.embers = mix.glowing("embers", 0xFF7A2A, 700.0f);
   for (int i = 0; i < kPaintings; ++i) {
     const ModelTexture picture = painting_texture(i);

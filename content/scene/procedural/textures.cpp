@@ -64,7 +64,7 @@ ModelTexture cloth_texture() {
     const double warp = 0.5 + 0.5 * std::cos(kTurn_rad * 16.0 * uv.x), weft = 0.5 + 0.5 * std::cos(kTurn_rad * 16.0 * uv.y);
     const bool over = (static_cast<int>(16.0 * uv.x) + static_cast<int>(16.0 * uv.y)) % 2 == 0;
     const double slub = fractal_noise(8.0 * uv, {8, 8}, 3, 41);
-    return glm::dvec3(0.80 + 0.10 * (over ? 1.0 - warp : 1.0 - weft) + 0.14 * (slub - 0.5));
+    return glm::dvec3(0.88 + 0.08 * (over ? 1.0 - warp : 1.0 - weft) + 0.14 * (slub - 0.5));
   });
 }
 
