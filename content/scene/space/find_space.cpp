@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "content/error.h"
 #include "content/scene/space.h"
@@ -20,7 +21,7 @@ constexpr double kFurnitureDepth_m = 1.25;  // how far a head can lean over what
 
 // Walls and floors of a building that stands upright make y the axis with most area across it.
 void check_up_axis(const Scene& scene, std::vector<std::string>& warnings) {
-  const double nearly = std::cos(11.0 * 3.14159265358979 / 180.0);
+  const double nearly = std::cos(11.0 * std::numbers::pi / 180.0);
   glm::dvec3 across(0.0);
   for (const glm::uvec3& t : scene.triangles) {
     const glm::dvec3 a(scene.positions_m[t.x]);
