@@ -84,7 +84,7 @@ float Blink::darkness() const {
   return 0.0f;
 }
 
-Walker::Walker(const FloorMap& floor, const Pose& start)
+FloorWalker::FloorWalker(const FloorMap& floor, const Pose& start)
     : floor_(floor),
       foot_m_(start.position_m - glm::dvec3(0, kEyeHeight_m, 0)),
       eye_height_m_(kEyeHeight_m),
@@ -98,12 +98,12 @@ Walker::Walker(const FloorMap& floor, const Pose& start)
   }
 }
 
-void Walker::look(double yaw_rad, double pitch_rad) {
+void FloorWalker::look(double yaw_rad, double pitch_rad) {
   yaw_rad_ = std::remainder(yaw_rad_ + yaw_rad, 2.0 * std::numbers::pi);
   pitch_rad_ = std::clamp(pitch_rad_ + pitch_rad, -kPitchLimit_rad, kPitchLimit_rad);
 }
 
-bool Walker::can_stand(glm::dvec2 at, double foot_m, double radius_m) const {
+bool FloorWalker::can_stand(glm::dvec2 at, double foot_m, double radius_m) const {
   const auto centre = floor_height_m(floor_, {at.x, foot_m, at.y});
   if (!centre) return false;
   if (radius_m <= 0.0) return true;
@@ -115,7 +115,7 @@ bool Walker::can_stand(glm::dvec2 at, double foot_m, double radius_m) const {
   return true;
 }
 
-void Walker::step(glm::dvec2 move) {
+void FloorWalker::step(glm::dvec2 move) {
   if (floor_.nodes.empty()) {
     foot_m_ += glm::dvec3(move.x, 0, move.y);
     return;
@@ -132,7 +132,7 @@ void Walker::step(glm::dvec2 move) {
   }
 }
 
-void Walker::advance(glm::dvec2 wish, double speed_m_s, double dt_s) {
+void FloorWalker::advance(glm::dvec2 wish, double speed_m_s, double dt_s) {
   if (const auto target_m = blink_.advance(dt_s)) {
     foot_m_ = *target_m;
     smooth_floor_m_ = foot_m_.y;
@@ -148,7 +148,7 @@ void Walker::advance(glm::dvec2 wish, double speed_m_s, double dt_s) {
   smooth_floor_m_ += (foot_m_.y - smooth_floor_m_) * (1.0 - std::exp(-dt_s / kHeightSmoothing_s));
 }
 
-Pose Walker::head() const {
+Pose FloorWalker::head() const {
   Pose pose;
   pose.position_m = {foot_m_.x, smooth_floor_m_ + eye_height_m_, foot_m_.z};
   pose.yaw_rad = yaw_rad_;

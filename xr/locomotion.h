@@ -1,5 +1,5 @@
 // How a person moves through the pack: pure maths on the walkable floor, no device, no clock of its own.
-// Window: a Walker is moved by keys and mouse. Headset: the wearer moves inside a Rig, which only teleports.
+// Window: a FloorWalker is moved by keys and mouse. Headset: the wearer moves inside a Rig, which only teleports.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -45,10 +45,10 @@ class Blink {
 
 // A walker in a window. Walls block (a body of kBodyRadius_m slides along them), steps are climbed, the eye follows the
 // floor smoothly. Where the pack has no floor at all the walker floats.
-class Walker {
+class FloorWalker {
  public:
   // `floor` must outlive the walker. `start` is an eye pose.
-  Walker(const FloorMap& floor, const Pose& start);
+  FloorWalker(const FloorMap& floor, const Pose& start);
 
   void look(double yaw_rad, double pitch_rad);  // relative; pitch stays within 85 degrees
   void teleport(glm::dvec3 floor_m) { blink_.start(floor_m); }

@@ -52,7 +52,7 @@ class WindowSource final : public FrameSource {
   EyeImages images_;
   WindowSwapchain swapchain_;
   FramePacer pacer_;
-  Walker walker_;
+  FloorWalker walker_;
   WindowInput input_;
   FrameTarget target_;
   std::int64_t last_display_ns_ = 0;

@@ -40,30 +40,30 @@ Pose eye_at(double x, double z, double yaw_rad = 0.0, double floor_m = 0.0) {
   return pose;
 }
 
-void walk(Walker& walker, glm::dvec2 wish, double seconds) {
+void walk(FloorWalker& walker, glm::dvec2 wish, double seconds) {
   for (double t = 0; t < seconds; t += 0.01) walker.advance(wish, 1.0, 0.01);
 }
 
 // Two rooms of 4 m x 2 m, z in [0, 2) and [2.15, 4), with a wall of 0.15 m between them and a door at x in [3, 3.8).
 double two_rooms(double x, double z) { return z > 2.0 && z < 2.15 && !(x >= 3.0 && x < 3.8) ? NAN : 0.0; }
 
-TEST(Walker, WalksForwardAlongItsYaw) {
+TEST(FloorWalker, WalksForwardAlongItsYaw) {
   const FloorMap floor = make_floor({4, 4}, [](double, double) { return 0.0; });
-  Walker ahead(floor, eye_at(2, 3));
+  FloorWalker ahead(floor, eye_at(2, 3));
   walk(ahead, {0, 1}, 1.0);
   EXPECT_NEAR(ahead.head().position_m.z, 2.0, 0.03);
   EXPECT_NEAR(ahead.head().position_m.x, 2.0, 1e-9);
-  Walker left(floor, eye_at(2, 3, std::numbers::pi / 2));
+  FloorWalker left(floor, eye_at(2, 3, std::numbers::pi / 2));
   walk(left, {0, 1}, 1.0);
   EXPECT_NEAR(left.head().position_m.x, 1.0, 0.03);
-  Walker diagonal(floor, eye_at(2, 3));
+  FloorWalker diagonal(floor, eye_at(2, 3));
   walk(diagonal, {1, 1}, 1.0);  // two keys are not faster than one
   EXPECT_NEAR(glm::distance(diagonal.head().position_m, glm::dvec3(2, kEyeHeight_m, 3)), 1.0, 0.03);
 }
 
-TEST(Walker, IsStoppedByWallsAtABodysWidthAndSlidesAlongThem) {
+TEST(FloorWalker, IsStoppedByWallsAtABodysWidthAndSlidesAlongThem) {
   const FloorMap floor = make_floor({4, 4}, two_rooms);
-  Walker walker(floor, eye_at(1, 1));
+  FloorWalker walker(floor, eye_at(1, 1));
   walk(walker, {0, -1}, 5.0);
   EXPECT_LT(walker.head().position_m.z, 2.0 - kBodyRadius_m + 0.06);
   EXPECT_GT(walker.head().position_m.z, 1.7);
@@ -73,20 +73,20 @@ TEST(Walker, IsStoppedByWallsAtABodysWidthAndSlidesAlongThem) {
   EXPECT_LT(walker.head().position_m.z, 2.0);
 }
 
-TEST(Walker, GoesThroughDoors) {
+TEST(FloorWalker, GoesThroughDoors) {
   const FloorMap floor = make_floor({4, 4}, two_rooms);
-  Walker walker(floor, eye_at(3.4, 1));
+  FloorWalker walker(floor, eye_at(3.4, 1));
   walk(walker, {0, -1}, 2.0);
   EXPECT_NEAR(walker.head().position_m.z, 3.0, 0.1);
 }
 
-TEST(Walker, ClimbsStepsSmoothlyButNoLedge) {
+TEST(FloorWalker, ClimbsStepsSmoothlyButNoLedge) {
   // Steps of 0.2 m every 0.3 m up to 1 m, and a ledge of 0.6 m at z = 0.5.
   const FloorMap floor = make_floor({2, 6}, [](double, double z) {
     if (z < 0.5) return 1.6;
     return std::clamp(std::floor((4.0 - z) / 0.3) * 0.2, 0.0, 1.0);
   });
-  Walker walker(floor, eye_at(1, 5.5));
+  FloorWalker walker(floor, eye_at(1, 5.5));
   double last_y = walker.head().position_m.y;
   for (int i = 0; i < 800; ++i) {
     walker.advance({0, 1}, 1.0, 0.01);
@@ -98,9 +98,9 @@ TEST(Walker, ClimbsStepsSmoothlyButNoLedge) {
   EXPECT_GT(walker.head().position_m.z, 0.5);
 }
 
-TEST(Walker, TeleportsInTheDark) {
+TEST(FloorWalker, TeleportsInTheDark) {
   const FloorMap floor = make_floor({4, 4}, [](double, double) { return 0.0; });
-  Walker walker(floor, eye_at(1, 1));
+  FloorWalker walker(floor, eye_at(1, 1));
   walker.teleport({3, 0, 3});
   float darkest = 0.0f;
   for (int i = 0; i < 60; ++i) {

@@ -1,0 +1,169 @@
+// probewalk walk: through a pack in a headset, a window or offscreen, with a report of every frame.
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "content/error.h"
+#include "tools/probewalk/commands.h"
+#include "xr/latency/run_files.h"
+#include "xr/walk.h"
+
+namespace probewalk {
+
+namespace {
+
+constexpr std::uint32_t kMaxEyeSide_px = 8192;
+
+struct WalkArguments {
+  WalkOptions walk;
+  std::string eye_size;
+  std::string path, record, report, pictures;
+  std::uint64_t frames = 0;
+  double seconds = 0.0;
+  std::uint64_t budget_mib = 0;
+  bool settle = false, realtime = false;
+  double ev = 0.0;
+  CLI::Option* ev_option = nullptr;
+};
+
+// WxH of one eye.
+VkExtent2D parse_eye_size(const std::string& text) {
+  unsigned width = 0, height = 0;
+  char rest = 0;
+  if (std::sscanf(text.c_str(), "%5ux%5u%c", &width, &height, &rest) != 2 || width < 1 || height < 1 ||
+      width > kMaxEyeSide_px || height > kMaxEyeSide_px) {
+    throw BadUsage(fmt::format("--eye-size {}: write WxH in pixels of one eye, such as 960x1080, at most {} a side", text,
+                               kMaxEyeSide_px));
+  }
+  return {width, height};
+}
+
+// The words this process was started with; the report shows them, so that a run can be repeated.
+std::string own_command_line() {
+  std::ifstream file("/proc/self/cmdline", std::ios::binary);
+  std::vector<std::string> words;
+  for (std::string word; std::getline(file, word, '\0');) words.push_back(word);
+  std::vector<const char*> pointers;
+  for (const std::string& word : words) pointers.push_back(word.c_str());
+  return command_line(static_cast<int>(pointers.size()), pointers.data());
+}
+
+void print_ending(const WalkResult& result, const WalkArguments& arguments) {
+  const Summary summary = result.ledger.summary();
+  const auto frame_ns = summary.quantity("frame").histogram.percentile(0.5);
+  fmt::print("{} frames in the {}{}, {}\n", summary.frames + summary.warmup_frames, result.info.display,
+             result.info.runtime.empty() ? "" : " (" + result.info.runtime + ")",
+             frame_ns ? fmt::format("median {:.1f} ms a frame", static_cast<double>(*frame_ns) * 1e-6)
+                      : std::string("too few to time"));
+  if (result.pictures > 0) fmt::print("{} pictures in {}\n", result.pictures, arguments.pictures);
+  if (!arguments.record.empty()) fmt::print("path: {}\n", arguments.record);
+  if (!arguments.report.empty()) fmt::print("report: {}/index.html\n", arguments.report);
+}
+
+// The exit code of a walk that did not end by itself.
+void check_ending(const WalkResult& result) {
+  const std::size_t frames = result.ledger.frames().size();
+  if (result.end == WalkResult::End::kLost) {
+    throw NoDevice(fmt::format("the {} was lost after {} frames; path and report hold the frames until then",
+                               result.info.display, frames));
+  }
+  if (result.end == WalkResult::End::kInterrupted) {
+    throw Interrupted(fmt::format("interrupted after {} frames; path and report hold them", frames));
+  }
+  if (result.validation_messages > 0) {
+    throw CheckFailed(fmt::format("the Vulkan validation layer had {} messages (above)", result.validation_messages));
+  }
+}
+
+void run_walk(WalkArguments arguments, const CommonOptions& common) {
+  WalkOptions& walk_options = arguments.walk;
+  const auto file_or_none = [](const std::string& name) {
+    return name.empty() ? std::nullopt : std::optional<std::filesystem::path>(name);
+  };
+  walk_options.path = file_or_none(arguments.path);
+  walk_options.record = file_or_none(arguments.record);
+  walk_options.report = file_or_none(arguments.report);
+  walk_options.pictures = file_or_none(arguments.pictures);
+  if (arguments.frames > 0) walk_options.frames = arguments.frames;
+  if (arguments.seconds > 0.0) walk_options.seconds = arguments.seconds;
+  if (!arguments.eye_size.empty()) walk_options.display.eye_size = parse_eye_size(arguments.eye_size);
+  if (arguments.budget_mib > 0) walk_options.budget_bytes = arguments.budget_mib << 20;
+  if (arguments.settle || arguments.realtime) walk_options.settle = arguments.settle;
+  if (arguments.ev_option->count() > 0) walk_options.exposure_ev = arguments.ev;
+  walk_options.loader_threads = common.threads > 0 ? static_cast<unsigned>(common.threads) : 2;
+  walk_options.display.device.device = common.device;
+  walk_options.command = own_command_line();
+
+  const std::unique_ptr<Progress> progress = make_progress(common);
+  const WalkResult result = walk(walk_options, *progress);
+  if (common.json) {
+    std::fputs(summary_json(result.ledger, result.info).c_str(), stdout);
+  } else if (!common.quiet) {
+    print_ending(result, arguments);
+  }
+  check_ending(result);
+}
+
+}  // namespace
+
+void add_walk_command(CLI::App& app, CommonOptions& common) {
+  CLI::App* command = app.add_subcommand("walk", "Walk through a pack in a headset, a window or offscreen");
+  command->footer(
+      "Headset: walk as you are; select (trigger) aims and, released, teleports, menu goes back to the rig's middle.\n"
+      "Window: drag to look, WASD to walk, shift to run, click on the floor to go there, F12 for a picture, Esc to leave.\n"
+      "Offscreen: plays the pack's tour once over its frames, on a fixed clock.\n\n"
+      "  probewalk walk house.probes                                      the first display that answers\n"
+      "  probewalk walk house.probes --frames 600 --report report/        with a report of its latency\n"
+      "  probewalk walk house.probes --display headset --record walk.jsonl\n"
+      "  probewalk walk house.probes --display offscreen --path walk.jsonl --save-frames pictures/\n"
+      "A replayed path decides what every display shows; in a headset it plays like a film.");
+  auto arguments = std::make_shared<WalkArguments>();
+  WalkOptions& walk_options = arguments->walk;
+  command->add_option("pack", walk_options.pack, "The pack, a folder NAME.probes")->required();
+  const std::map<std::string, DisplayChoice> displays{{"auto", DisplayChoice::kAuto},
+                                                      {"headset", DisplayChoice::kHeadset},
+                                                      {"window", DisplayChoice::kWindow},
+                                                      {"offscreen", DisplayChoice::kOffscreen}};
+  command->add_option("--display", walk_options.display.choice,
+                      "auto (headset if a runtime answers, else a window, else offscreen), headset, window, offscreen")
+      ->transform(CLI::CheckedTransformer(displays))
+      ->option_text("NAME");
+  command->add_option("--path", arguments->path, "Replay this path: JSON lines, as --record writes them");
+  command->add_option("--record", arguments->record, "Write the path walked, with the views of both eyes");
+  command->add_option("--frames", arguments->frames, "End after this many frames (offscreen: 600 unless a path says more)")
+      ->check(CLI::Range(1ull, 100'000'000ull));
+  command->add_option("--seconds", arguments->seconds, "End after this time on the display's clock")
+      ->check(CLI::PositiveNumber);
+  command->add_option("--eye-size", arguments->eye_size,
+                      "Pixels of one eye, WxH (default: what the headset recommends; else 640x720)");
+  command->add_option("--device-budget", arguments->budget_mib, "Device memory for probes, MiB (default: unlimited)")
+      ->check(CLI::Range(1ull, 1ull << 24));
+  command->add_option("--report", arguments->report, "Write frames.csv, summary.json, trace.json and index.html here");
+  const std::map<std::string, ShownEyes> eyes{
+      {"both", ShownEyes::kBoth}, {"left", ShownEyes::kLeft}, {"right", ShownEyes::kRight}};
+  command->add_option("--mirror", walk_options.display.window_eyes, "What the window shows: both eyes side by side, left, right")
+      ->transform(CLI::CheckedTransformer(eyes))
+      ->option_text("NAME");
+  CLI::Option* settle =
+      command->add_flag("--settle", arguments->settle, "Wait for the rooms that each pose wants (default: offscreen only)");
+  command->add_flag("--realtime", arguments->realtime, "Never wait for rooms: show what is there")->excludes(settle);
+  command->add_flag("--seated", walk_options.display.seated, "Headset: the head's resting place is at standing eye height");
+  arguments->ev_option = command->add_option("--ev", arguments->ev, "Exposure value, instead of the pack's")
+                             ->check(CLI::Range(-32.0, 32.0));
+  command->add_option("--save-frames", arguments->pictures, "Write the eyes' pictures here as PNG");
+  command->add_option("--save-every", walk_options.picture_every, "Of how many frames one is written")
+      ->check(CLI::Range(1ull, 1'000'000ull))
+      ->capture_default_str();
+  command->add_flag("--validate", walk_options.display.device.validation,
+                    "Load the Vulkan validation layer; exit 1 when it has anything to say");
+  add_common_options(*command, common);
+  command->callback([arguments, &common] { run_walk(*arguments, common); });
+}
+
+}  // namespace probewalk

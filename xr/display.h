@@ -1,0 +1,47 @@
+// Which display a walk uses: the first that answers, or the one that was asked for.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "content/scene/space.h"
+#include "render/device.h"
+#include "xr/eyes.h"
+#include "xr/frame_source.h"
+#include "xr/window_layout.h"
+
+namespace probewalk {
+
+class OpenXrInstance;
+class Window;
+
+enum class DisplayChoice { kAuto, kHeadset, kWindow, kOffscreen };
+
+struct DisplayOptions {
+  DisplayChoice choice = DisplayChoice::kAuto;
+  VkExtent2D eye_size{0, 0};  // 0 = the display's own choice
+  ShownEyes window_eyes = ShownEyes::kBoth;
+  bool seated = false;
+  EyeGeometry eyes;  // window and offscreen; a headset has its own
+  DeviceOptions device;
+};
+
+// A display with the device that draws for it. Members are destroyed from the last to the first, as Vulkan wants.
+struct Display {
+  std::unique_ptr<OpenXrInstance> runtime;  // headset only
+  std::unique_ptr<Window> window;           // window only
+  std::unique_ptr<Device> device;
+  std::unique_ptr<FrameSource> source;
+  std::string runtime_name;  // of the OpenXR runtime and headset; empty where none takes part
+  std::string reason;        // why this one: a sentence for the log
+
+  Display();
+  Display(Display&&) noexcept;
+  ~Display();
+};
+
+// Throws NoDevice when the display asked for does not answer, or with kAuto when not even offscreen works. `floor`
+// outlives the display.
+Display open_display(const DisplayOptions& options, const FloorMap& floor, const Pose& start);
+
+}  // namespace probewalk

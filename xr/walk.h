@@ -1,0 +1,46 @@
+// A walk through a pack: the one frame loop, whatever the display.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "content/progress.h"
+#include "content/stream/residency.h"
+#include "xr/display.h"
+#include "xr/latency/ledger.h"
+#include "xr/latency/run_info.h"
+
+namespace probewalk {
+
+struct WalkOptions {
+  std::filesystem::path pack;
+  DisplayOptions display;
+  std::optional<std::filesystem::path> path;     // replayed; overrides the views of every display
+  std::optional<std::filesystem::path> record;   // the path walked, with views, is written here
+  std::optional<std::filesystem::path> report;   // directory for the report's files
+  std::optional<std::filesystem::path> pictures; // directory for the eyes' pictures
+  std::uint64_t picture_every = 1;               // frames from one picture to the next
+  std::optional<std::uint64_t> frames;           // submitted, then the walk ends
+  std::optional<double> seconds;                 // of the display's clock, then the walk ends
+  std::optional<bool> settle;                    // wait for the rooms that each pose wants; default: offscreen only
+  std::uint64_t budget_bytes = kUnlimitedBudget; // device memory for probes
+  unsigned loader_threads = 1;
+  std::optional<double> exposure_ev;             // default: the pack's
+  std::string command;                           // the words that repeat the walk, for the report
+};
+
+struct WalkResult {
+  Ledger ledger;
+  RunInfo info;
+  std::uint64_t pictures = 0;
+  std::uint32_t validation_messages = 0;
+  enum class End { kDone, kClosed, kInterrupted, kLost } end = End::kDone;
+};
+
+// Walks until the frames, seconds or path are over, the user leaves, the display is lost, or progress.cancelled(). Path
+// and report are written in every case. Throws BadInput, BadUsage, NoDevice.
+WalkResult walk(const WalkOptions& options, Progress& progress);
+
+}  // namespace probewalk

@@ -1,0 +1,102 @@
+#include "xr/walk_rooms.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "content/error.h"
+#include "render/frame_renderer.h"
+#include "xr/latency/clock.h"
+
+namespace probewalk {
+namespace {
+
+constexpr auto kSettlePatience = std::chrono::minutes(5);
+constexpr double kVelocitySmoothing_s = 0.2;  // head bob and sway average out
+constexpr double kJump_m = 0.5;               // further in one frame is a teleport, not a motion
+
+StreamerOptions streamer_options(const WalkRoomsOptions& options) {
+  StreamerOptions streamer;
+  streamer.residency.budget_bytes = options.budget_bytes;
+  streamer.loader.threads = options.threads;
+  streamer.retire_updates = kFrameSlots + 1;
+  return streamer;
+}
+
+// The finest level of `room` among those wanted; -1 = none.
+std::int32_t wanted_level(const ResidencyDecision& decision, std::uint32_t room) {
+  std::int32_t level = -1;
+  for (const LevelKey& key : decision.wanted) {
+    if (key.room == room) level = std::max(level, static_cast<std::int32_t>(key.level));
+  }
+  return level;
+}
+
+}  // namespace
+
+WalkRooms::WalkRooms(const Pack& pack, const Device& device, const WalkRoomsOptions& options, Progress& progress)
+    : pack_(pack),
+      progress_(progress),
+      options_(options),
+      source_(pack.path()),
+      store_(device, pack.manifest().grid, static_cast<std::uint32_t>(pack.manifest().probe_positions_m.size()),
+             ProbeStoreOptions{.frame_slots = kFrameSlots}),
+      streamer_(
+          pack.manifest(), source_,
+          [this](LoadedLevel&& loaded) {
+            store_.upload({loaded.room, loaded.level, loaded.first_probe, std::move(loaded.probes)});
+          },
+          [this](LevelKey key) { store_.evict(key.room, key.level); }, streamer_options(options)) {}
+
+void WalkRooms::update(const ViewPose& head, std::int64_t display_ns, FrameRecord& record) {
+  const std::int64_t begin_ns = now_ns();
+  double dt_s = 0.0;
+  if (last_display_ns_ && display_ns > *last_display_ns_) {
+    dt_s = static_cast<double>(display_ns - *last_display_ns_) * 1e-9;
+    const glm::dvec3 moved_m = head.position_m - walker_.head_m;
+    const glm::dvec3 velocity = glm::length(moved_m) < kJump_m ? moved_m / dt_s : glm::dvec3(0);
+    walker_.velocity_m_s += (velocity - walker_.velocity_m_s) * std::min(1.0, dt_s / kVelocitySmoothing_s);
+  }
+  last_display_ns_ = display_ns;
+  walker_.head_m = head.position_m;
+  streamer_.update(walker_);
+  report_errors();
+
+  const ResidencyDecision& decision = streamer_.decision();
+  const int shown = store_.level_shown(decision.room);
+  // Nothing to show is black at once; what arrives comes up gently.
+  darkness_ = shown < 0 ? 1.0 : std::max(0.0, darkness_ - dt_s / kFadeIn_s);
+  record.room = static_cast<std::int32_t>(decision.room);
+  record.level_shown = shown;
+  record.level_wanted = wanted_level(decision, decision.room);
+  record.queue_depth = static_cast<std::uint32_t>(streamer_.statistics().queue_depth) + store_.queue_depth();
+  record.device_bytes = store_.device_bytes();
+  const std::uint64_t uploaded = store_.bytes_uploaded();
+  record.bytes_uploaded = uploaded - bytes_uploaded_;
+  bytes_uploaded_ = uploaded;
+  record.streaming_ns = now_ns() - begin_ns;
+}
+
+void WalkRooms::settle() {
+  if (!streamer_.settle(walker_, kSettlePatience)) {
+    throw BadInput(fmt::format("{}: the rooms did not load within {} minutes; walk with --realtime to go on without",
+                               pack_.path().string(), kSettlePatience.count()));
+  }
+  report_errors();
+  darkness_ = 0.0;
+}
+
+void WalkRooms::report_errors() {
+  for (const std::string& error : streamer_.take_errors()) progress_.note(error);
+}
+
+StreamingFacts WalkRooms::facts() const {
+  const StreamerStatistics& statistics = streamer_.statistics();
+  StreamingFacts facts;
+  facts.rooms_loaded = statistics.rooms_loaded;
+  facts.device_budget_bytes = options_.budget_bytes == kUnlimitedBudget ? 0 : options_.budget_bytes;
+  facts.need_to_resident_ns = statistics.need_to_resident_ns;
+  return facts;
+}
+
+}  // namespace probewalk

@@ -1,0 +1,61 @@
+// The rooms of a walk: keeps what the walker needs on the device, frame by frame, and says how dark the view must be
+// while there is nothing to show.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <optional>
+
+#include "content/pack/pack_io.h"
+#include "content/progress.h"
+#include "content/stream/room_streamer.h"
+#include "render/probe_store.h"
+#include "xr/frame_source.h"
+#include "xr/latency/frame_record.h"
+#include "xr/latency/run_info.h"
+
+namespace probewalk {
+
+struct WalkRoomsOptions {
+  std::uint64_t budget_bytes = kUnlimitedBudget;
+  unsigned threads = 1;
+};
+
+class WalkRooms {
+ public:
+  static constexpr double kFadeIn_s = 0.3;
+
+  // `pack`, `device` and `progress` outlive this. Throws BadUsage when the budget is too small.
+  WalkRooms(const Pack& pack, const Device& device, const WalkRoomsOptions& options, Progress& progress);
+
+  ProbeStore& store() { return store_; }
+
+  // Once a frame, on the frame thread; never waits for a disk. Fills in what the record says about streaming.
+  void update(const ViewPose& head, std::int64_t display_ns, FrameRecord& record);
+  // Waits until what the last update's walker wants has been handed to the device. Throws BadInput when the pack does
+  // not deliver.
+  void settle();
+  // Everything wanted shows in the frame that was recorded last.
+  bool all_shown() const { return streamer_.settled() && store_.idle(); }
+
+  // 1 = black: the walker's room has nothing to show. As of the frame recorded last; comes back gradually.
+  float darkness() const { return static_cast<float>(darkness_); }
+  StreamingFacts facts() const;
+
+ private:
+  void report_errors();
+
+  const Pack& pack_;
+  Progress& progress_;
+  WalkRoomsOptions options_;
+  FolderSource source_;
+  ProbeStore store_;
+  RoomStreamer streamer_;  // its threads hand rooms to the store: they end first
+  Walker walker_;
+  std::optional<std::int64_t> last_display_ns_;
+  std::uint64_t bytes_uploaded_ = 0;  // as of the last update
+  double darkness_ = 1.0;
+};
+
+}  // namespace probewalk
