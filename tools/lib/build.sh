@@ -19,16 +19,16 @@ if [ ! -e "$dir/build.ninja" ]; then
   cmake --preset "$preset" >"$log" 2>&1 || { rm -f "$dir/CMakeCache.txt"; fail "configuring failed"; }
 fi
 
-# One line when something is built; a counter in place on a terminal.
+# Passes ninja's output on; says one line when something is really built, on a terminal with a counter in place.
 show() {
   local line said=
   while IFS= read -r line; do
     printf '%s\n' "$line"
-    [[ $line =~ ^\[([0-9]+)/([0-9]+)\] ]] || continue
+    [[ $line =~ ^\[([0-9]+)/([0-9]+)\]\ (Building|Linking|Generating) ]] || continue
     if [ -t 2 ]; then
       printf '\rprobewalk: building (%s) %d of %d ' "$preset" "${BASH_REMATCH[1]}" "${BASH_REMATCH[2]}" >&2
     elif [ -z "$said" ]; then
-      printf 'probewalk: building (%s), %d steps; log: %s\n' "$preset" "${BASH_REMATCH[2]}" "$PWD/$log" >&2
+      echo "probewalk: building ($preset); log: $PWD/$log" >&2
     fi
     said=yes
   done

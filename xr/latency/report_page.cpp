@@ -91,14 +91,17 @@ std::string banners(const Run& run, const Summary& summary) {
 std::string percentile_table(const Summary& summary) {
   std::string html = "<div class=\"scroll\"><table><tr><th>quantity</th><th>n</th>";
   for (const PercentileRank& rank : percentile_ranks()) fmt::format_to(std::back_inserter(html), "<th>{}</th>", rank.label);
-  html += "<th>max</th></tr>\n";
+  html += "<th>max</th><th>min</th></tr>\n";
   for (const QuantitySummary& quantity : summary.quantities) {
     fmt::format_to(std::back_inserter(html), "<tr><td>{}</td><td>{}</td>", heading(quantity), quantity.histogram.count());
     for (const PercentileRank& rank : percentile_ranks()) html += "<td>" + percentile_cell(quantity, rank) + "</td>";
-    html += "<td>" + (quantity.histogram.count() > 0 ? value_text(quantity, quantity.histogram.max()) : kNone) + "</td></tr>\n";
+    for (const std::int64_t end : {quantity.histogram.max(), quantity.histogram.min()}) {
+      html += "<td>" + (quantity.histogram.count() > 0 ? value_text(quantity, end) : kNone) + "</td>";
+    }
+    html += "</tr>\n";
   }
   return html +
-         "</table></div>\n<p class=\"soft\">From log-linear buckets, each within 1 %; max is exact. Up to p99 at least one "
+         "</table></div>\n<p class=\"soft\">From log-linear buckets, each within 1 %; max and min are exact (for the deadline margin, min is the worst). Up to p99 at least one "
          "frame lies beyond the percentile shown; p99.9 needs 10 000 frames. n differs where a quantity does not exist for "
          "every frame.</p>\n";
 }

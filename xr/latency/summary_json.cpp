@@ -26,7 +26,9 @@ Json percentiles(const QuantitySummary& quantity) {
     const auto value = quantity.histogram.percentile(rank);
     entry[rank.name] = value ? in_unit(*value) : Json();
   }
-  entry["max"] = quantity.histogram.count() > 0 ? in_unit(quantity.histogram.max()) : Json();
+  const bool any = quantity.histogram.count() > 0;
+  entry["max"] = any ? in_unit(quantity.histogram.max()) : Json();
+  entry["min"] = any ? in_unit(quantity.histogram.min()) : Json();
   return entry;
 }
 

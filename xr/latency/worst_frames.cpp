@@ -60,13 +60,12 @@ std::size_t blame(const StageTimes& excess) {
   const std::size_t tile = largest(excess, kBegin, kStreaming);
   const std::size_t inner = largest(excess, kStreaming, kBlocked);
   if (2 * excess[inner] >= excess[tile]) return inner;
-  const bool cpu_waited = tile == kWait || 2 * excess[kBlocked] >= excess[tile];
-  if (cpu_waited) {
+  const bool blocked = 2 * excess[kBlocked] >= excess[tile];
+  if (blocked || tile == kWait || tile == kBetweenCalls) {
     const std::size_t device = largest(excess, kGpuTrace, kStageCount);
     if (2 * excess[device] >= excess[tile]) return device;
-    if (tile != kWait) return kBlocked;
   }
-  return tile;
+  return blocked ? kBlocked : tile;
 }
 
 std::string in_words(std::size_t stage, const StageTimes& times, const StageTimes& medians, const FrameRecord& work,
