@@ -93,7 +93,7 @@ TEST(HouseTracer, AllCompilationsAndBruteForceAgree) {
 
   // Heads along the tour, looking everywhere.
   test::Random random(17);
-  std::vector<Ray> batch;
+  std::vector<WorldRay> batch;
   for (int k = 0; k < kRays; ++k) {
     const Pose& pose = space.tour[static_cast<std::size_t>(random() * static_cast<double>(space.tour.size()))];
     const glm::dvec3 head = pose.position_m + glm::dvec3(random(-0.1, 0.1), random(-0.2, 0.1), random(-0.1, 0.1));
@@ -108,7 +108,7 @@ TEST(HouseTracer, AllCompilationsAndBruteForceAgree) {
   std::vector<char> tie32(kRays), tie64(kRays);
   std::vector<std::unique_ptr<BruteForceProbe>> brutes(geometry.size());
   tbb::parallel_for(std::size_t{0}, geometry.size(), [&](std::size_t p) { brutes[p] = std::make_unique<BruteForceProbe>(geometry[p]); });
-  const auto split_direction = [](const Ray& ray) { return glm::vec3(glm::normalize(ray.direction)); };
+  const auto split_direction = [](const WorldRay& ray) { return glm::vec3(glm::normalize(ray.direction)); };
   tbb::parallel_for(0, kRays, [&](int k) {
     glm::vec3 hi, lo;
     split_position(batch[k].origin_m, hi, lo);
@@ -146,7 +146,7 @@ TEST(HouseTracer, AllCompilationsAndBruteForceAgree) {
   const Device device({}, {});
   ProbeStore store(device, placement.grid, static_cast<std::uint32_t>(placement.sites.size()));
   store.upload({.room = 0, .level = 0, .first_probe = 0, .probes = on_device});
-  make_resident(device, store);
+  store.settle();
   const std::vector<BatchAnswer> answers = RayBatch(device).trace(store, dials, batch, 0.001f);
   Table glsl("whole answer, device against C++ float"), precision("whole answer, C++ float against C++ double");
   int bits = 0, unknown = 0;

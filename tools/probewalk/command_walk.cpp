@@ -12,6 +12,7 @@
 #include "content/error.h"
 #include "tools/probewalk/commands.h"
 #include "xr/latency/run_files.h"
+#include "xr/latency/summary_json.h"
 #include "xr/walk.h"
 
 namespace probewalk {
