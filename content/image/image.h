@@ -38,7 +38,7 @@ ImageRgb8 display_transform(const ImageRgbF& image, float exposure_ev);
 float flip_mean(const ImageRgb8& reference, const ImageRgb8& test, float pixels_per_degree, std::vector<float>* map = nullptr);
 // Peak signal-to-noise ratio over 8-bit RGB; infinity for equal pictures.
 double psnr_db(const ImageRgb8& a, const ImageRgb8& b);
-// A scalar map as a picture, blue (0) to yellow (1).
+// A scalar map as a picture, blue (0) to yellow (maximum); values that are not finite are magenta.
 ImageRgb8 false_colour(const std::vector<float>& values, int width_px, int height_px, float maximum);
 // Several pictures of equal height side by side.
 ImageRgb8 side_by_side(const std::vector<ImageRgb8>& images);
