@@ -13,7 +13,8 @@ namespace {
 // Brighter than anything shown, and small enough for the tone curve's arithmetic.
 constexpr float kBrightest = 1e18f;
 
-float shown(float value) { return std::isnan(value) ? 0.0f : std::clamp(value, -kBrightest, kBrightest); }
+// Negative radiance is nobody's: the curve would mirror it.
+float shown(float value) { return std::isnan(value) ? 0.0f : std::clamp(value, 0.0f, kBrightest); }
 
 std::uint8_t to_byte(float value) { return static_cast<std::uint8_t>(std::lround(srgb_encode(value) * 255.0f)); }
 

@@ -3,7 +3,7 @@
 
 #include <fstream>
 
-#include "content/gltf_scene.h"
+#include "content/scene/gltf_scene.h"
 #include "content/scene/alpha_test.h"
 
 namespace probewalk {

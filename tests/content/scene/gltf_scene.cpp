@@ -1,4 +1,4 @@
-#include "content/gltf_scene.h"
+#include "content/scene/gltf_scene.h"
 
 #include <array>
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "content/gltf_scene.h"
+#include "content/scene/gltf_scene.h"
 
 namespace probewalk {
 namespace {

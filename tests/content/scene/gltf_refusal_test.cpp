@@ -5,7 +5,7 @@
 #include <functional>
 
 #include "content/error.h"
-#include "content/gltf_scene.h"
+#include "content/scene/gltf_scene.h"
 
 namespace probewalk {
 namespace {
