@@ -16,6 +16,7 @@ namespace probewalk {
 namespace {
 
 constexpr float kReachPerSpacing = 1.75f;   // five or six points speak at any place
+constexpr float kCellPerReach = 0.5f;       // smaller cells list fewer points in vain, in more lists
 constexpr float kOffPlane = 3.0f;           // distance across the surface counts this much more than along it
 constexpr float kSameFacing = 0.8f;         // cosine above which two points are in each other's way
 constexpr float kLeastFacing = 0.2f;        // cosine below which a point says nothing
@@ -146,13 +147,14 @@ std::uint64_t CachePoints::cell_key(glm::ivec3 cell) const {
 }
 
 void CachePoints::build_index() {
+  cell_m_ = kCellPerReach * reach_m_;
   std::vector<std::pair<std::uint64_t, std::uint32_t>> entries;
   for (std::uint32_t k = 0; k < points_.size(); ++k) {
     const glm::vec3 p = points_[k].position_m, n = points_[k].normal;
     // The influence is a flat ellipsoid; its box.
     const glm::vec3 half =
         reach_m_ * glm::sqrt(glm::max(glm::vec3(1.0f) - n * n * (1.0f - 1.0f / (kOffPlane * kOffPlane)), 0.0f));
-    const glm::ivec3 low(glm::floor((p - half) / reach_m_)), high(glm::floor((p + half) / reach_m_));
+    const glm::ivec3 low(glm::floor((p - half) / cell_m_)), high(glm::floor((p + half) / cell_m_));
     for (int z = low.z; z <= high.z; ++z) {
       for (int y = low.y; y <= high.y; ++y) {
         for (int x = low.x; x <= high.x; ++x) entries.emplace_back(cell_key({x, y, z}), k);
@@ -163,7 +165,8 @@ void CachePoints::build_index() {
   members_.resize(entries.size());
   std::size_t cells = 0;
   for (std::size_t k = 0; k < entries.size(); ++k) {
-    members_[k] = entries[k].second;
+    const Point& point = points_[entries[k].second];
+    members_[k] = {point.position_m, entries[k].second, point.normal};
     cells += k == 0 || entries[k].first != entries[k - 1].first;
   }
   std::size_t capacity = 16;
@@ -203,25 +206,26 @@ float CachePoints::open_fraction(const Point& point, glm::vec3 offset, float tan
 
 glm::vec3 CachePoints::interpolate(const std::vector<glm::vec3>& values, glm::vec3 position_m, glm::vec3 normal,
                                    bool with_hidden) const {
-  const Bucket* bucket = find(cell_key(glm::ivec3(glm::floor(position_m / reach_m_))));
+  const Bucket* bucket = find(cell_key(glm::ivec3(glm::floor(position_m / cell_m_))));
   if (!bucket) return glm::vec3(0.0f);
   const float inverse_square = 1.0f / (reach_m_ * reach_m_);
   glm::vec3 sum(0.0f);
   float weights = 0.0f;
   for (std::uint32_t m = bucket->first; m < bucket->first + bucket->count; ++m) {
-    const Point& point = points_[members_[m]];
-    const float facing = glm::dot(point.normal, normal);
-    if (facing <= kLeastFacing || (point.hidden && !with_hidden)) continue;
-    const glm::vec3 offset = position_m - point.position_m;
-    const float across = glm::dot(offset, point.normal);
-    const float along_square = std::max(glm::dot(offset, offset) - across * across, 0.0f);
-    const float square = (along_square + kOffPlane * kOffPlane * across * across) * inverse_square;
-    if (square >= 1.0f) continue;
+    const Member& member = members_[m];
+    const glm::vec3 offset = position_m - member.position_m;
+    const float facing = glm::dot(member.normal, normal), across = glm::dot(offset, member.normal);
+    const float straight_square = glm::dot(offset, offset);
+    const float square = (straight_square + (kOffPlane * kOffPlane - 1.0f) * across * across) * inverse_square;
+    if (facing <= kLeastFacing || square >= 1.0f) continue;
+    const Point& point = points_[member.point];
+    if (point.hidden && !with_hidden) continue;
+    const float along_m = std::sqrt(std::max(straight_square - across * across, 0.0f));
     const float kernel = (1.0f - square) * (1.0f - square);
     const float turned = (facing - kLeastFacing) / (1.0f - kLeastFacing);
-    const float open = point.hidden ? 0.0f : open_fraction(point, offset, std::sqrt(along_square));
+    const float open = point.hidden ? 0.0f : open_fraction(point, offset, along_m);
     const float weight = kernel * turned * turned * (open + kBlockedWeight);
-    sum += values[members_[m]] * weight;
+    sum += values[member.point] * weight;
     weights += weight;
   }
   return weights > kVanishing ? sum / weights : glm::vec3(0.0f);

@@ -41,6 +41,12 @@ class CachePoints {
 
  private:
   static constexpr float kNearSteps = 12.0f;
+  // What decides whether a point matters at a place, copied beside its neighbours': looking is most of the work.
+  struct Member {
+    glm::vec3 position_m{0.0f};
+    std::uint32_t point = 0;
+    glm::vec3 normal{0.0f};
+  };
   struct Bucket {
     std::uint64_t key = ~0ull;
     std::uint32_t first = 0, count = 0;
@@ -57,8 +63,9 @@ class CachePoints {
   float reach_m_ = 0.4f;  // of a point's influence
   std::uint64_t rays_cast_ = 0;
   std::vector<Point> points_;
-  std::vector<std::uint32_t> members_;  // indices of points, grouped by the cell they influence
-  std::vector<Bucket> buckets_;         // open addressing, a power of two of them
+  float cell_m_ = 0.2f;          // of the index
+  std::vector<Member> members_;  // grouped by the cell that they influence
+  std::vector<Bucket> buckets_;  // open addressing, a power of two of them
 };
 
 }  // namespace probewalk

@@ -17,8 +17,10 @@ namespace {
 // More points than this take longer to gather than they add; the spacing is raised instead.
 constexpr std::size_t kMaxPoints = 300000;
 // The first bounce carries the windows and lamps, and is gathered with more rays than the later, smoother ones.
-constexpr int kFirstGather = 4;
-constexpr int kSecondGather = 2;
+constexpr int kFirstGather = 2;
+int rays_of_bounce(int samples, int bounce) {
+  return bounce == 1 ? kFirstGather * samples : bounce == 2 ? samples : std::max(samples / 2, 1);
+}
 constexpr float kMaxTailRatio = 0.95f;
 
 using Values = std::vector<glm::vec3>;
@@ -129,14 +131,14 @@ IrradianceCache::IrradianceCache(const Scene& scene, const RayScene& rays, const
   const Values direct_values = gather.direct_light(rays_cast_);
   // The series of bounces: each gathers what the one before has added.
   Values emitted;
-  Values last = gather.gather(direct_values, options.samples * kFirstGather, 0, &emitted, rays_cast_);
+  Values last = gather.gather(direct_values, rays_of_bounce(options.samples, 1), 1, &emitted, rays_cast_);
   indirect_ = emitted;
   if (bounces == 0) return;
   add(indirect_, last);
   add(last, emitted);
   glm::dvec3 before = total(last), now = before;
   for (int bounce = 2; bounce <= bounces + 1; ++bounce) {
-    last = gather.gather(last, options.samples * (bounce == 2 ? kSecondGather : 1), bounce, nullptr, rays_cast_);
+    last = gather.gather(last, rays_of_bounce(options.samples, bounce), bounce, nullptr, rays_cast_);
     if (bounce <= bounces) add(indirect_, last);
     before = now;
     now = total(last);

@@ -1,0 +1,156 @@
+#include "content/bake/bake_job.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <fstream>
+#include <iterator>
+#include <map>
+
+#include "content/error.h"
+#include "content/pack/file_io.h"
+#include "content/pack/pack_io.h"
+#include "content/scene/procedural/procedural.h"
+
+namespace probewalk {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Asks to stop once this many texels are done.
+class StoppingProgress final : public Progress {
+ public:
+  explicit StoppingProgress(std::uint64_t after_texels) : after_(after_texels) {}
+  void begin(std::string_view stage, std::uint64_t, std::string_view) override { counting_ = stage == "probes"; }
+  void advance(std::uint64_t done) override { stop_ = stop_ || (counting_ && done >= after_); }
+  void note(std::string_view) override {}
+  bool cancelled() const override { return stop_; }
+
+ private:
+  std::uint64_t after_;
+  bool counting_ = false;
+  std::atomic<bool> stop_ = false;
+};
+
+class BakeJob : public testing::Test {
+ protected:
+  void SetUp() override {
+    const testing::TestInfo* test = testing::UnitTest::GetInstance()->current_test_info();
+    folder_ = fs::path(PROBEWALK_TEST_OUTPUT_DIR) / "bake_job" / test->name();
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+    write_file_whole(folder_ / "scene.glb", make_procedural_glb("two-rooms"));
+  }
+
+  BakeOptions options(const std::string& pack, int threads = 0) const {
+    BakeOptions o;
+    o.scene_file = folder_ / "scene.glb";
+    o.pack = folder_ / (pack + ".probes");
+    o.resolution = 32;
+    o.coarse_resolution = 16;
+    o.placement.max_probes = 6;
+    o.light.samples = 8;
+    o.light.bounces = 1;
+    o.light.cache_spacing_m = 1.0;
+    o.light.threads = threads;
+    return o;
+  }
+
+  static BakeReport bake_quietly(const BakeOptions& o) {
+    SilentProgress progress;
+    return bake(o, progress);
+  }
+
+  static std::map<std::string, std::string> files(const fs::path& pack) {
+    std::map<std::string, std::string> contents;
+    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(pack)) {
+      if (!entry.is_regular_file()) continue;
+      std::ifstream file(entry.path(), std::ios::binary);
+      contents[fs::relative(entry.path(), pack).string()] = {std::istreambuf_iterator<char>(file), {}};
+    }
+    return contents;
+  }
+
+  fs::path folder_;
+};
+
+TEST_F(BakeJob, MakesAWholePackOfTwoLevels) {
+  const BakeReport report = bake_quietly(options("a"));
+  const Pack pack = Pack::open(folder_ / "a.probes");
+  SilentProgress progress;
+  EXPECT_TRUE(pack.verify(progress).empty());
+  EXPECT_EQ(report.probes, pack.manifest().probe_positions_m.size());
+  EXPECT_EQ(report.levels, 2u);
+  EXPECT_EQ(report.texels, report.probes * (32 * 32 + 16 * 16));
+  EXPECT_GT(report.rays, report.texels);
+  EXPECT_GT(report.connected_fraction, 0.5);
+  EXPECT_LE(report.connected_fraction, 1.0);
+  EXPECT_EQ(report.bytes_disk, pack.manifest().bytes_disk());
+  EXPECT_FALSE(fs::exists(folder_ / "a.probes.partial"));
+  bool lit = false;
+  for (std::size_t room = 0; room < pack.manifest().rooms.size(); ++room) {
+    if (pack.manifest().rooms[room].probe_count == 0) continue;
+    const RoomLevel level = pack.read_level(room, 1);
+    for (std::size_t k = 0; k < level.probes.size(); ++k) {
+      // The place that rays were cast from survives the pack's floats exactly.
+      EXPECT_EQ(level.probes[k].geometry.position_m,
+                pack.manifest().probe_positions_m[pack.manifest().rooms[room].first_probe + k]);
+      lit |= decode_rgb9e5(level.probes[k].radiance.rgb9e5.back()) != glm::vec3(0.0f);
+    }
+  }
+  EXPECT_TRUE(lit);
+}
+
+TEST_F(BakeJob, GivesTheSameBytesTwiceAndWhateverTheThreads) {
+  bake_quietly(options("one", 1));
+  bake_quietly(options("two", 2));
+  EXPECT_EQ(files(folder_ / "one.probes"), files(folder_ / "two.probes"));
+}
+
+TEST_F(BakeJob, GoesOnAfterAnInterruption) {
+  bake_quietly(options("straight"));
+  StoppingProgress stopping(2 * 16 * 16);
+  EXPECT_THROW(bake(options("stopped"), stopping), Interrupted);
+  ASSERT_TRUE(fs::exists(folder_ / "stopped.probes.partial"));
+  EXPECT_FALSE(fs::exists(folder_ / "stopped.probes" / "pack.json"));
+  // One of the kept probes is damaged meanwhile: it is not believed.
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder_ / "stopped.probes.partial")) {
+    if (entry.path().filename().string().starts_with("probe-0000")) {
+      std::fstream(entry.path(), std::ios::in | std::ios::out | std::ios::binary).seekp(100).put('\x7f');
+    }
+  }
+  bake_quietly(options("stopped"));
+  EXPECT_EQ(files(folder_ / "straight.probes"), files(folder_ / "stopped.probes"));
+  EXPECT_FALSE(fs::exists(folder_ / "stopped.probes.partial"));
+}
+
+TEST_F(BakeJob, BakesOneRoomOfAPackAnew) {
+  bake_quietly(options("whole"));
+  const auto before = files(folder_ / "whole.probes");
+  BakeOptions one = options("whole");
+  one.only_room = Pack::open(one.pack).manifest().rooms[0].id;
+  bake_quietly(one);
+  EXPECT_EQ(files(folder_ / "whole.probes"), before);
+  one.only_room = "cellar";
+  EXPECT_THROW(bake_quietly(one), BadUsage);
+  one.only_room = Pack::open(one.pack).manifest().rooms[0].id;
+  one.light.samples = 16;
+  EXPECT_THROW(bake_quietly(one), BadUsage) << "its other rooms were baked with other options";
+  EXPECT_EQ(files(folder_ / "whole.probes"), before);
+}
+
+TEST_F(BakeJob, RefusesWhatItCannotBake) {
+  BakeOptions odd = options("a");
+  odd.resolution = 100;
+  EXPECT_THROW(bake_quietly(odd), BadUsage);
+  BakeOptions no_pack = options("a");
+  no_pack.pack = folder_ / "pack";
+  EXPECT_THROW(bake_quietly(no_pack), BadUsage);
+  BakeOptions no_scene = options("a");
+  no_scene.scene_file = folder_ / "none.glb";
+  EXPECT_THROW(bake_quietly(no_scene), BadInput);
+  EXPECT_FALSE(fs::exists(folder_ / "a.probes"));
+}
+
+}  // namespace
+}  // namespace probewalk
