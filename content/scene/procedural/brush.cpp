@@ -211,7 +211,6 @@ void Brush::lathe(MaterialId material, glm::dvec3 foot, const std::vector<glm::d
       const std::uint32_t a = first + k * stride + i, b = a + 1, d = a + stride, c = d + 1;
       if (profile[k].x > 1e-9) to.indices.insert(to.indices.end(), {a, b, c});
       if (profile[k + 1].x > 1e-9) to.indices.insert(to.indices.end(), {a, c, d});
-      if (profile[k].x <= 1e-9) continue;
     }
   }
 }
@@ -244,7 +243,9 @@ void Brush::sheet(MaterialId material, int columns, int rows, const std::functio
   for (std::uint32_t j = 0; j < static_cast<std::uint32_t>(rows); ++j) {
     for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(columns); ++i) {
       const std::uint32_t a = first + j * stride + i, b = a + 1, d = a + stride, c = d + 1;
-      for (const std::uint32_t corner : {a, b, c, a, c, d}) to.indices.push_back(corner);
+      const auto coincide = [&](std::uint32_t x, std::uint32_t y) { return to.positions_m[x] == to.positions_m[y]; };
+      if (!coincide(a, b)) to.indices.insert(to.indices.end(), {a, b, c});  // rows may shrink to a point
+      if (!coincide(c, d)) to.indices.insert(to.indices.end(), {a, c, d});
     }
   }
 }

@@ -206,7 +206,7 @@ class Writer {
             static_cast<std::vector<std::uint8_t>*>(context)->assign(bytes, bytes + size);
           },
           &png, texture.width_px, texture.height_px, texture.channels, texture.pixels.data(), texture.width_px * texture.channels);
-      const std::string view = "png " + texture.name;
+      const std::string view = "png " + std::to_string(root_["images"].size());
       image_length_[view] = png.size();
       binary_.append(view, png);
       root_["textures"].push_back({{"sampler", 0}, {"source", root_["images"].size()}});

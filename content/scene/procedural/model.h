@@ -80,6 +80,8 @@ struct Model {
   MaterialId add(ModelMaterial material);
   // Index of a new object; a name that is taken gets a number.
   std::size_t add_object(const std::string& wanted_name);
+  // Removes materials that no mesh uses, then textures that no material uses.
+  void drop_unused();
 };
 
 // Linear colour of an sRGB triple as painters write it, 0xRRGGBB.

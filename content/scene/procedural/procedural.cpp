@@ -34,7 +34,11 @@ std::vector<ProceduralSceneInfo> procedural_scenes() {
 std::vector<std::byte> make_procedural_glb(std::string_view name) {
   std::string known;
   for (const Entry& entry : kScenes) {
-    if (name == entry.name) return procedural::write_glb(entry.make());
+    if (name == entry.name) {
+      procedural::Model model = entry.make();
+      model.drop_unused();
+      return procedural::write_glb(model);
+    }
     known += known.empty() ? entry.name : fmt::format(", {}", entry.name);
   }
   throw BadUsage(fmt::format("there is no scene named \"{}\"; the scenes are: {}", name, known));

@@ -140,8 +140,8 @@ ModelTexture marble_texture() {
   });
 }
 
-ModelTexture knot_rug_texture(std::uint32_t ground, std::uint32_t figure, std::uint32_t accent) {
-  return fill("knot rug", 384, 256, [=](glm::dvec2 uv) {
+ModelTexture knot_rug_texture(const std::string& name, std::uint32_t ground, std::uint32_t figure, std::uint32_t accent) {
+  return fill(name, 384, 256, [=](glm::dvec2 uv) {
     const glm::dvec2 from_edge = glm::min(uv, 1.0 - uv) * glm::dvec2(3.0, 2.0);
     const double edge = glm::min(from_edge.x, from_edge.y);
     const double pile = 0.90 + 0.16 * hash01(static_cast<int>(uv.x * 384), static_cast<int>(uv.y * 256), 121);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 
 #include "content/scene/procedural/model.h"
 
@@ -19,7 +20,7 @@ ModelTexture brick_texture();        // 4 x 12 bricks, running bond
 ModelTexture grass_texture();
 ModelTexture bark_texture();
 ModelTexture marble_texture();
-ModelTexture knot_rug_texture(std::uint32_t ground, std::uint32_t figure, std::uint32_t accent);  // one whole rug
+ModelTexture knot_rug_texture(const std::string& name, std::uint32_t ground, std::uint32_t figure, std::uint32_t accent);  // one whole rug
 ModelTexture stripe_rug_texture();                                                               // one whole rug
 ModelTexture blanket_texture(std::uint32_t ground, std::uint32_t line);
 ModelTexture leaf_texture();         // a twig of leaves with alpha; one whole picture

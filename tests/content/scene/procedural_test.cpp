@@ -1,10 +1,15 @@
 #include "content/scene/procedural/procedural.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <filesystem>
+#include <fstream>
 #include <glm/glm.hpp>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -13,6 +18,9 @@
 #include <string_view>
 
 #include "content/error.h"
+#include "content/scene/ray_scene.h"
+#include "content/scene/scene.h"
+#include "content/scene/space.h"
 
 namespace probewalk {
 namespace {
@@ -73,6 +81,16 @@ const Glb& scene(std::string_view name) {
   return found != made.end() ? found->second : made.emplace(std::string(name), make_procedural_glb(name)).first->second;
 }
 
+// The scene as a bake sees it.
+Scene loaded_scene(const std::string& name) {
+  const std::filesystem::path file = std::filesystem::path(PROBEWALK_TEST_OUTPUT_DIR) / ("procedural-" + name + "-" + std::to_string(getpid()) + ".glb");
+  const std::vector<std::byte>& bytes = scene(name).bytes;
+  std::ofstream(file, std::ios::binary).write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  Scene loaded = load_scene(file);
+  std::filesystem::remove(file);
+  return loaded;
+}
+
 class EveryProceduralScene : public testing::TestWithParam<std::string> {};
 
 TEST_P(EveryProceduralScene, IsTheSameBytesTwice) { EXPECT_EQ(scene(GetParam()).bytes, make_procedural_glb(GetParam())); }
@@ -114,6 +132,14 @@ TEST_P(EveryProceduralScene, HasAccessorsInsideTheirBuffersAndTrueBounds) {
   }
 }
 
+TEST_P(EveryProceduralScene, LoadsWithoutAWarning) {
+  const Scene loaded = loaded_scene(GetParam());
+  EXPECT_THAT(loaded.warnings, testing::IsEmpty());
+  EXPECT_EQ(loaded.scale, 1.0);
+  EXPECT_EQ(loaded.triangles.size(), scene(GetParam()).triangles());
+  EXPECT_EQ(loaded.rooms.size(), scene(GetParam()).rooms().size());
+}
+
 TEST_P(EveryProceduralScene, NamesItsNodesOnceAndItsExtensions) {
   const Glb& glb = scene(GetParam());
   std::set<std::string> names;
@@ -153,6 +179,51 @@ TEST(ProceduralHouse, HasItsRoomsOnTwoFloorsAndACourtyard) {
   EXPECT_GE(ground, 4);
   EXPECT_GE(upper, 4);
   EXPECT_TRUE(rooms.contains("Courtyard"));
+}
+
+TEST(ProceduralHouse, CanBeWalkedFromRoomToRoom) {
+  const Scene house = loaded_scene("house");
+  const RayScene rays(house);
+  SilentProgress progress;
+  const Space space = find_space(house, rays, {}, progress);
+  std::map<std::string, double> floor_m2;
+  for (const FloorNode& node : space.floor.nodes)
+    if (node.room < space.rooms.size()) floor_m2[space.rooms[node.room].name] += space.floor.cell_m * space.floor.cell_m;
+  for (const auto& [name, box] : scene("house").rooms()) EXPECT_GT(floor_m2[name], 0.4 * (box[3] - box[0]) * (box[5] - box[2])) << name;
+  const auto joined = [&](const std::string& a, const std::string& b) {
+    return std::any_of(space.portals.begin(), space.portals.end(), [&](const Portal& portal) {
+      const std::string &first = space.rooms[portal.room_a].name, &second = space.rooms[portal.room_b].name;
+      return (first == a && second == b) || (first == b && second == a);
+    });
+  };
+  EXPECT_TRUE(joined("Hall", "Stairwell"));
+  EXPECT_TRUE(joined("Stairwell", "Landing"));
+  EXPECT_TRUE(joined("Hall", "Library"));
+  EXPECT_TRUE(joined("Living room", "Courtyard"));
+  EXPECT_TRUE(joined("Landing", "Bedroom"));
+}
+
+TEST(ProceduralHouse, NoRayPassesItsShell) {
+  // Rays into corners and along seams: from the middle of each indoor room towards its edges, where walls, floors and
+  // ceilings meet. Nothing there may be missed or hit from behind.
+  const Scene house = loaded_scene("house");
+  const RayScene rays(house);
+  for (const auto& [name, box] : scene("house").rooms()) {
+    if (name == "Courtyard" || name == "Stairwell") continue;
+    const glm::vec3 lower(box[0], box[1], box[2]), upper(box[3], box[4], box[5]), middle = 0.5f * (lower + upper);
+    for (int step = 0; step <= 400; ++step) {
+      const float t = static_cast<float>(step) / 400.0f;
+      for (const float x : {lower.x, upper.x})
+        for (const float y : {lower.y, upper.y}) {
+          EXPECT_TRUE(rays.closest(middle, glm::vec3(x, y, glm::mix(lower.z, upper.z, t)) - middle).hit) << name << ' ' << t;
+        }
+      for (const float z : {lower.z, upper.z})
+        for (const float x : {lower.x, upper.x}) {
+          const SurfaceHit hit = rays.closest(middle, glm::vec3(x, glm::mix(lower.y, upper.y, t), z) - middle);
+          EXPECT_TRUE(hit.hit) << name << ' ' << t;
+        }
+    }
+  }
 }
 
 TEST(ProceduralHouse, KeepsItsSize) {
