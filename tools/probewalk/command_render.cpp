@@ -1,0 +1,341 @@
+// probewalk render: stills of a pack, their auxiliary pictures, and the same picture from the triangles.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <functional>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "content/error.h"
+#include "content/pack/pack_format.h"
+#include "content/probe/probe_set.h"
+#include "render/view.h"
+#include "shaders/shared/display_transform.h"
+#include "tools/probewalk/commands.h"
+#include "tools/probewalk/reference_picture.h"
+#include "tools/probewalk/still.h"
+#include "xr/eyes.h"
+
+namespace probewalk {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr unsigned kMaxSide_px = 8192;
+const std::vector<std::string> kAovNames{"radiance", "distance", "lookups", "probe", "class"};
+
+struct RenderArguments {
+  std::string pack, output;
+  std::vector<double> pose;  // x, y, z, yaw, pitch; metres and degrees
+  std::string size = "1280x720";
+  double fov_deg = 70.0;
+  bool stereo = false;
+  double ipd_m = 0.063;
+  std::vector<std::string> aov;
+  double ev = 0.0;
+  CLI::Option* ev_option = nullptr;
+  bool reference = false;
+  std::string scene;
+  SceneLoadOptions load;
+  double scale = 0.0;
+  LightOptions light;
+};
+
+VkExtent2D parse_size(const std::string& text) {
+  unsigned width = 0, height = 0;
+  char rest = 0;
+  if (std::sscanf(text.c_str(), "%5ux%5u%c", &width, &height, &rest) != 2 || width < 1 || height < 1 ||
+      width > kMaxSide_px || height > kMaxSide_px) {
+    throw BadUsage(fmt::format("--size {}: write WxH in pixels of one eye, such as 1280x720, at most {} a side", text,
+                               kMaxSide_px));
+  }
+  return {width, height};
+}
+
+Pose parse_pose(const std::vector<double>& numbers) {
+  for (const double number : numbers) {
+    if (!(std::abs(number) <= PackLimits::kCoordinate_m)) {
+      throw BadUsage(fmt::format("--pose: {} is out of range; write x,y,z in metres, then yaw and pitch in degrees", number));
+    }
+  }
+  return {{numbers[0], numbers[1], numbers[2]}, glm::radians(numbers[3]), glm::radians(numbers[4])};
+}
+
+struct Views {
+  glm::dvec3 head_m{0.0};
+  std::vector<ViewConstants> constants;
+};
+
+Views make_views(const RenderArguments& arguments, const Pose& pose, VkExtent2D extent) {
+  ViewPose head;
+  const std::vector<ViewPose> eyes =
+      eyes_of(pose, {arguments.ipd_m, glm::radians(arguments.fov_deg)}, extent, &head);
+  Views views{head.position_m, {}};
+  for (const ViewPose& eye : arguments.stereo ? eyes : std::vector<ViewPose>{head}) {
+    views.constants.push_back(view_constants(
+        eye.position_m, eye.orientation, {eye.fov_left_rad, eye.fov_right_rad, eye.fov_up_rad, eye.fov_down_rad},
+        static_cast<int>(extent.width)));
+  }
+  return views;
+}
+
+// Maps of equal size side by side: what side_by_side does for pictures.
+template <typename T, typename Value>
+std::vector<float> joined(const std::vector<std::vector<T>>& maps, VkExtent2D extent, Value value) {
+  std::vector<float> result;
+  result.reserve(maps.size() * maps.front().size());
+  for (std::size_t y = 0; y < extent.height; ++y) {
+    for (const auto& map : maps) {
+      for (std::size_t x = 0; x < extent.width; ++x) result.push_back(value(map[y * extent.width + x]));
+    }
+  }
+  return result;
+}
+
+std::vector<std::vector<glm::vec3>> texels(const std::vector<ImageRgbF>& images) {
+  std::vector<std::vector<glm::vec3>> result;
+  for (const ImageRgbF& image : images) result.push_back(image.rgb);
+  return result;
+}
+
+// An auxiliary map of the whole picture.
+std::vector<float> aov_map(const Still& still, const std::string& name, VkExtent2D extent) {
+  if (name == "distance") {
+    return joined(still.distance_m, extent, [](float t) {
+      return t >= kMissDistance_m ? std::numeric_limits<float>::infinity() : t;
+    });
+  }
+  const auto count = [&](auto value) { return joined(still.counts, extent, value); };
+  if (name == "lookups") return count([](glm::uvec4 c) { return static_cast<float>(c.z); });
+  if (name == "probe") return count([](glm::uvec4 c) { return static_cast<float>(static_cast<std::int32_t>(c.y)); });
+  return count([](glm::uvec4 c) { return static_cast<float>(c.x); });  // class
+}
+
+std::vector<ExrChannel> colour_channels(const std::vector<ImageRgbF>& images, VkExtent2D extent) {
+  const auto rgb = texels(images);
+  return {{"R", joined(rgb, extent, [](glm::vec3 c) { return c.x; })},
+          {"G", joined(rgb, extent, [](glm::vec3 c) { return c.y; })},
+          {"B", joined(rgb, extent, [](glm::vec3 c) { return c.z; })}};
+}
+
+// OUT with `tag` before its extension.
+fs::path beside(const fs::path& output, const std::string& tag, const std::string& extension) {
+  return output.parent_path() / (output.stem().string() + "-" + tag + extension);
+}
+
+float largest_finite(const std::vector<float>& values) {
+  float largest = 0.0f;
+  for (const float value : values) {
+    if (std::isfinite(value)) largest = std::max(largest, value);
+  }
+  return largest;
+}
+
+class RenderJob {
+ public:
+  RenderJob(const RenderArguments& arguments, const CommonOptions& common)
+      : arguments_(arguments),
+        output_(arguments.output),
+        is_exr_(output_.extension() == ".exr"),
+        pack_(Pack::open(arguments.pack)),
+        ev_(arguments.ev_option->count() > 0 ? arguments.ev : pack_.manifest().exposure_ev),
+        extent_(parse_size(arguments.size)),
+        views_(make_views(arguments, arguments.pose.empty() ? pack_.manifest().start : parse_pose(arguments.pose), extent_)),
+        progress_(make_progress(common)),
+        device_({}, {.device = common.device}) {}
+
+  nlohmann::json run();
+
+ private:
+  std::vector<ImageRgb8> displayed(const std::vector<ImageRgbF>& images) const;
+  void write(const fs::path& file, const std::vector<ImageRgb8>& shown, const std::vector<ImageRgbF>& radiance,
+             std::vector<ExrChannel> more = {}) const;
+  void write_still(const fs::path& file, const Still& still) const;
+  void compare(const Still& still, nlohmann::json& report);
+  void count(const Still& still, nlohmann::json& report) const;
+  int width_px() const { return static_cast<int>(extent_.width * views_.constants.size()); }
+  int height_px() const { return static_cast<int>(extent_.height); }
+
+  const RenderArguments& arguments_;
+  const fs::path output_;
+  const bool is_exr_;
+  const Pack pack_;
+  const double ev_;
+  const VkExtent2D extent_;
+  const Views views_;
+  const std::unique_ptr<Progress> progress_;
+  const Device device_;
+};
+
+nlohmann::json RenderJob::run() {
+  FrameSettings settings;
+  settings.trace = default_dials(pack_.manifest().radiance_scale);
+  settings.exposure = exposure_from_ev(static_cast<float>(ev_));
+  const Still still = draw_still(pack_, device_, views_.head_m, views_.constants, extent_, settings, *progress_);
+  nlohmann::json report = {{"picture", output_.string()},
+                           {"device", device_.info().name},
+                           {"width", width_px()},
+                           {"height", height_px()},
+                           {"views", views_.constants.size()},
+                           {"exposure_ev", ev_}};
+  count(still, report);
+  if (arguments_.reference) {
+    compare(still, report);
+  } else {
+    write_still(output_, still);
+  }
+  return report;
+}
+
+std::vector<ImageRgb8> RenderJob::displayed(const std::vector<ImageRgbF>& images) const {
+  std::vector<ImageRgb8> result;
+  for (const ImageRgbF& image : images) result.push_back(display_transform(image, static_cast<float>(ev_)));
+  return result;
+}
+
+void RenderJob::write(const fs::path& file, const std::vector<ImageRgb8>& shown,
+                      const std::vector<ImageRgbF>& radiance, std::vector<ExrChannel> more) const {
+  if (!is_exr_) return write_png(file, side_by_side(shown));
+  std::vector<ExrChannel> channels = colour_channels(radiance, extent_);
+  std::move(more.begin(), more.end(), std::back_inserter(channels));
+  write_exr(file, width_px(), height_px(), channels);
+}
+
+void RenderJob::write_still(const fs::path& file, const Still& still) const {
+  std::vector<ExrChannel> maps;
+  for (const std::string& name : arguments_.aov) {
+    if (name != "radiance") maps.push_back({name, aov_map(still, name, extent_)});
+  }
+  write(file, still.shown, still.radiance_cd_m2, maps);
+  if (is_exr_) return;
+  for (const ExrChannel& map : maps) {
+    write_png(beside(file, map.name, ".png"),
+              false_colour(map.values, width_px(), height_px(), std::max(largest_finite(map.values), 1e-6f)));
+  }
+  if (std::find(arguments_.aov.begin(), arguments_.aov.end(), "radiance") != arguments_.aov.end()) {
+    // Luminance (Rec. 709) in false colour: what the tone curve hides.
+    const auto luminance = joined(texels(still.radiance_cd_m2), extent_,
+                                  [](glm::vec3 c) { return 0.2126f * c.x + 0.7152f * c.y + 0.0722f * c.z; });
+    write_png(beside(file, "radiance", ".png"),
+              false_colour(luminance, width_px(), height_px(), std::max(largest_finite(luminance), 1e-6f)));
+  }
+}
+
+// OUT from the triangles; OUT-probes from the probes; OUT-difference, the error as an eye sees it.
+void RenderJob::compare(const Still& still, nlohmann::json& report) {
+  SceneLoadOptions load = arguments_.load;
+  if (arguments_.scale > 0.0) load.scale = arguments_.scale;
+  const auto reference = cast_reference(arguments_.scene, load, arguments_.light, pack_.manifest(), views_.constants,
+                                        static_cast<int>(extent_.width), height_px(), *progress_);
+  // Both without dither, which is no error of the probes.
+  const auto expected = displayed(reference), actual = displayed(still.radiance_cd_m2);
+  write(output_, expected, reference);
+  write_still(beside(output_, "probes", output_.extension().string()), still);
+  std::vector<float> map;
+  const float pixels_per_degree = static_cast<float>(extent_.height / arguments_.fov_deg);
+  const ImageRgb8 expected_picture = side_by_side(expected), actual_picture = side_by_side(actual);
+  const float flip = flip_mean(expected_picture, actual_picture, pixels_per_degree, &map);
+  const double psnr = psnr_db(expected_picture, actual_picture);
+  write_png(beside(output_, "difference", ".png"), false_colour(map, width_px(), height_px(), 1.0f));
+  report["flip_mean"] = flip;
+  report["psnr_db"] = std::isfinite(psnr) ? nlohmann::json(psnr) : nlohmann::json();
+  report["pixels_per_degree"] = pixels_per_degree;
+}
+
+void RenderJob::count(const Still& still, nlohmann::json& report) const {
+  std::vector<std::uint32_t> lookups;
+  double sum = 0.0;
+  std::size_t unknown = 0, hits = 0;
+  for (const auto& view : still.counts) {
+    for (const glm::uvec4& texel : view) {
+      lookups.push_back(texel.z);
+      sum += texel.z;
+      hits += texel.x == static_cast<std::uint32_t>(kClassHit);
+      unknown += texel.x == static_cast<std::uint32_t>(kClassUnknown);
+    }
+  }
+  const auto share = [&](std::size_t n) { return static_cast<double>(n) / static_cast<double>(lookups.size()); };
+  const auto p99 = lookups.begin() + static_cast<std::ptrdiff_t>(lookups.size() * 99 / 100);
+  std::nth_element(lookups.begin(), p99, lookups.end());
+  report["hit_fraction"] = share(hits);
+  report["unknown_fraction"] = share(unknown);
+  report["lookups_mean"] = sum / static_cast<double>(lookups.size());
+  report["lookups_p99"] = *p99;
+  report["trace_ns"] = still.times.trace.end_ns - still.times.trace.begin_ns;
+}
+
+void check_usage(const RenderArguments& arguments) {
+  const std::string extension = fs::path(arguments.output).extension().string();
+  if (extension != ".png" && extension != ".exr") {
+    throw BadUsage(fmt::format("-o {}: give a file that ends in .png or .exr", arguments.output));
+  }
+  if (arguments.reference && arguments.scene.empty()) {
+    throw BadUsage("--reference casts at the triangles: name the scene that the pack was baked from with --scene FILE");
+  }
+  if (!arguments.reference && !arguments.scene.empty()) {
+    throw BadUsage("--scene is read for --reference alone: add --reference or leave it away");
+  }
+}
+
+void run_render(const RenderArguments& arguments, const CommonOptions& common) {
+  check_usage(arguments);
+  const nlohmann::json report = RenderJob(arguments, common).run();
+  if (common.json) {
+    std::puts(report.dump(2).c_str());
+  } else if (arguments.reference) {
+    fmt::print("{}: FLIP {:.4f} at {:.1f} pixels per degree, PSNR {} dB\n", arguments.output,
+               report["flip_mean"].get<double>(), report["pixels_per_degree"].get<double>(),
+               report["psnr_db"].is_null() ? "infinite" : fmt::format("{:.2f}", report["psnr_db"].get<double>()));
+  }
+}
+
+}  // namespace
+
+void add_render_command(CLI::App& app, CommonOptions& common) {
+  CLI::App* command = app.add_subcommand("render", "Draw stills of a pack, or the same picture from the triangles");
+  command->footer(
+      "A PNG is what the display would get (exposure, tone curve, sRGB); an EXR is linear radiance in cd/m^2. With --aov a\n"
+      "PNG gets false-colour pictures beside it (OUT-distance.png, ...), an EXR gets channels. With --reference, OUT is\n"
+      "cast at the triangles, OUT-probes is the same picture from the probes, OUT-difference.png the error as an eye sees\n"
+      "it (FLIP), and FLIP and PSNR are printed.\n\n"
+      "  probewalk render house.probes -o still.png --pose 1,1.6,2,30,0 --stereo\n"
+      "  probewalk render house.probes -o still.png --reference --scene house.glb");
+  auto arguments = std::make_shared<RenderArguments>();
+  command->add_option("pack", arguments->pack, "The pack (a folder NAME.probes)")->required();
+  command->add_option("-o,--output", arguments->output, "The picture: .png or .exr")->required();
+  command->add_option("--pose", arguments->pose,
+                      "Head: x,y,z in metres, yaw (0 looks along -z, positive to the left) and pitch (positive up) in "
+                      "degrees (default: the pack's start)")->delimiter(',')->expected(5);
+  command->add_option("--size", arguments->size, "Pixels of one eye, WxH")->capture_default_str();
+  command->add_option("--fov", arguments->fov_deg, "Vertical field of view in degrees")
+      ->check(CLI::Range(1.0, 170.0))->capture_default_str();
+  command->add_flag("--stereo", arguments->stereo, "Left and right eye in one picture");
+  command->add_option("--ipd", arguments->ipd_m, "Metres between the eyes")->check(CLI::Range(0.0, 1.0))->capture_default_str();
+  command->add_option("--aov", arguments->aov, "Auxiliary pictures: radiance,distance,lookups,probe,class")
+      ->delimiter(',')->check(CLI::IsMember(kAovNames));
+  arguments->ev_option = command->add_option("--ev", arguments->ev, "Exposure value at ISO 100 (default: the pack's)")
+      ->check(CLI::Range(-30.0, 30.0));
+  command->add_flag("--reference", arguments->reference, "Cast the picture at the triangles, and compare");
+  command->add_option("--scene", arguments->scene, "The scene that the pack was baked from, for --reference");
+  command->add_option("--scale", arguments->scale, "As given to bake, for --reference (default: the pack's)")
+      ->check(CLI::PositiveNumber);
+  command->add_flag("--recentre", arguments->load.recentre, "As given to bake, for --reference");
+  command->add_option("--samples", arguments->light.samples, "As given to bake, for --reference")
+      ->check(CLI::Range(8, 65536))->capture_default_str();
+  command->add_option("--bounces", arguments->light.bounces, "As given to bake, for --reference")
+      ->check(CLI::Range(0, 64))->capture_default_str();
+  command->add_option("--seed", arguments->light.seed, "As given to bake, for --reference")->capture_default_str();
+  add_common_options(*command, common);
+  command->callback([arguments, &common] {
+    arguments->light.threads = common.threads;
+    run_render(*arguments, common);
+  });
+}
+
+}  // namespace probewalk
