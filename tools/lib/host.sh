@@ -140,6 +140,7 @@ root_failed() {  # LOG
 
 prepare_root() {
   local stale
+  mkdir -p "$D13"
   exec {ROOT_LOCK}>"$D13_ROOT.lock"
   if [ "$(cat "$D13_ROOT/.probewalk-key" 2>/dev/null || true)" != "$(root_key)" ]; then
     # Commands that run in the old root hold the lock shared.
@@ -155,7 +156,7 @@ prepare_root() {
 
 prepare_platform() {
   PLATFORM=${PLATFORM:-$(platform_kind)}
-  mkdir -p "$BUILD" "$D13"
+  mkdir -p "$BUILD"
   if [ "$PLATFORM" = native ]; then need_packages $(packages); else prepare_root; fi
 }
 
