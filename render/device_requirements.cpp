@@ -30,17 +30,15 @@ void note_missing(std::string& missing, const std::string& what) {
 }  // namespace
 
 RequiredFeatures::RequiredFeatures() {
-  vulkan13.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES;
-  vulkan13.dynamicRendering = VK_TRUE;
-  vulkan13.synchronization2 = VK_TRUE;
-  vulkan12.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES;
-  vulkan12.pNext = &vulkan13;
-  vulkan12.bufferDeviceAddress = VK_TRUE;  // the tracer follows addresses
-  vulkan12.scalarBlockLayout = VK_TRUE;    // structs shared with C++
-  vulkan12.timelineSemaphore = VK_TRUE;    // frames in flight
-  vulkan12.hostQueryReset = VK_TRUE;       // time stamps
+  dynamic_rendering = {VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DYNAMIC_RENDERING_FEATURES, nullptr, VK_TRUE};
+  synchronization2 = {VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SYNCHRONIZATION_2_FEATURES, &dynamic_rendering, VK_TRUE};
+  buffer_addresses = {VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_BUFFER_DEVICE_ADDRESS_FEATURES, &synchronization2, VK_TRUE,
+                      VK_FALSE, VK_FALSE};
+  scalar_layout = {VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SCALAR_BLOCK_LAYOUT_FEATURES, &buffer_addresses, VK_TRUE};
+  timeline = {VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_TIMELINE_SEMAPHORE_FEATURES, &scalar_layout, VK_TRUE};
+  query_reset = {VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_HOST_QUERY_RESET_FEATURES, &timeline, VK_TRUE};
   head.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2;
-  head.pNext = &vulkan12;
+  head.pNext = &query_reset;
 }
 
 std::optional<std::uint32_t> find_queue_family(VkPhysicalDevice device, const CanPresent& can_present) {
@@ -89,12 +87,12 @@ DeviceInfo describe_device(VkPhysicalDevice device, const std::vector<std::strin
     RequiredFeatures has;
     vkGetPhysicalDeviceFeatures2(device, &has.head);
     const std::array<std::pair<VkBool32, const char*>, 6> needed{{
-        {has.vulkan13.dynamicRendering, "dynamicRendering"},
-        {has.vulkan13.synchronization2, "synchronization2"},
-        {has.vulkan12.bufferDeviceAddress, "bufferDeviceAddress"},
-        {has.vulkan12.scalarBlockLayout, "scalarBlockLayout"},
-        {has.vulkan12.timelineSemaphore, "timelineSemaphore"},
-        {has.vulkan12.hostQueryReset, "hostQueryReset"},
+        {has.dynamic_rendering.dynamicRendering, "dynamicRendering"},
+        {has.synchronization2.synchronization2, "synchronization2"},
+        {has.buffer_addresses.bufferDeviceAddress, "bufferDeviceAddress"},
+        {has.scalar_layout.scalarBlockLayout, "scalarBlockLayout"},
+        {has.timeline.timelineSemaphore, "timelineSemaphore"},
+        {has.query_reset.hostQueryReset, "hostQueryReset"},
     }};
     for (const auto& [present, name] : needed) {
       if (!present) note_missing(info.missing, name);

@@ -13,14 +13,19 @@
 
 namespace probewalk {
 
-// The features that are switched on, chained from `head`. Not movable: the chain holds addresses.
+// The features that are switched on, chained from `head`. Not movable: the chain holds addresses. One structure a
+// feature: an OpenXR runtime appends what it needs, finds what is there by structure type, and knows these.
 struct RequiredFeatures {
   RequiredFeatures();
   RequiredFeatures(const RequiredFeatures&) = delete;
   RequiredFeatures& operator=(const RequiredFeatures&) = delete;
 
-  VkPhysicalDeviceVulkan13Features vulkan13{};
-  VkPhysicalDeviceVulkan12Features vulkan12{};
+  VkPhysicalDeviceDynamicRenderingFeatures dynamic_rendering{};
+  VkPhysicalDeviceSynchronization2Features synchronization2{};
+  VkPhysicalDeviceBufferDeviceAddressFeatures buffer_addresses{};  // the tracer follows addresses
+  VkPhysicalDeviceScalarBlockLayoutFeatures scalar_layout{};       // structs shared with C++
+  VkPhysicalDeviceTimelineSemaphoreFeatures timeline{};            // frames in flight
+  VkPhysicalDeviceHostQueryResetFeatures query_reset{};            // time stamps
   VkPhysicalDeviceFeatures2 head{};
 };
 
