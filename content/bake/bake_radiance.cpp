@@ -17,17 +17,21 @@ constexpr double kMinDistance_m = 1e-4;  // as for the samples of the geometry
 constexpr float kSamePlane = 2e-3f;
 constexpr float kCurved = 0.03f;
 constexpr float kSameFacing = 0.7f;
-// A texel whose neighbours see the same surface and differ by less than this is as good as its centre.
-constexpr float kEven = 0.02f;
-constexpr float kEvenFloor_cd_m2 = 1e-3f;
+// A texel whose neighbours on the same surface are lit alike within this share is as good as its centre: textures are
+// filtered over its footprint anyway, so only light can change inside it.
+constexpr float kEven = 0.03f;
+constexpr float kEvenFloor_lux = 1e-2f;
 // Sub-samples within the texel, rotated so that no two share a row or column (the centre is a fifth).
 constexpr std::array<glm::dvec2, 4> kSubSamples{{{-0.375, -0.125}, {0.125, -0.375}, {0.375, 0.125}, {-0.125, 0.375}}};
 
 struct Centre {
   glm::vec3 radiance{0.0f};
+  glm::vec3 irradiance{0.0f};
   float w = 0.0f;             // 0 = sky
   glm::vec3 normal{0.0f};     // of the plane, unit, unoriented
   float plane_distance = 0.0f;  // normal . (point - probe)
+  glm::vec3 direction{0.0f};
+  float t = 0.0f;
   std::uint32_t triangle = 0;
 };
 
@@ -78,7 +82,9 @@ class RadianceBaker {
     const glm::vec3 direction(q / length);
     Centre centre;
     SurfaceHit hit;
-    centre.radiance = light_.along(glm::vec3(origin_m_), direction, spread_rad(length), &hit);
+    centre.radiance = light_.along(glm::vec3(origin_m_), direction, spread_rad(length), &hit, &centre.irradiance);
+    centre.direction = direction;
+    centre.t = hit.t;
     if (!hit.hit) return centre;
     centre.w = static_cast<float>(length / std::max(double(hit.t), kMinDistance_m));
     centre.normal = hit.geometric_normal;
@@ -102,9 +108,10 @@ class RadianceBaker {
     for (auto [x, y] : {std::pair(i - 1, j), std::pair(i + 1, j), std::pair(i, j - 1), std::pair(i, j + 1)}) {
       if (x < 0 || y < 0 || x >= r_ || y >= r_) continue;
       const Centre& other = centres_[texel(x, y)];
-      if ((other.w > 0.0f) != (own.w > 0.0f)) return false;
-      const glm::vec3 difference = glm::abs(other.radiance - own.radiance);
-      const glm::vec3 tolerance = kEven * glm::max(own.radiance, other.radiance) + kEvenFloor_cd_m2;
+      if (other.w == 0.0f || own.w == 0.0f) continue;
+      if (!continues(own, other.direction, other.t, other.normal, other.triangle)) continue;
+      const glm::vec3 difference = glm::abs(other.irradiance - own.irradiance);
+      const glm::vec3 tolerance = kEven * glm::max(own.irradiance, other.irradiance) + kEvenFloor_lux;
       if (glm::any(glm::greaterThan(difference, tolerance))) return false;
     }
     return true;

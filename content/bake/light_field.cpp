@@ -39,20 +39,24 @@ LightField::LightField(const Scene& scene, const RayScene& rays, const LightOpti
 
 LightField::~LightField() = default;
 
-glm::vec3 LightField::outgoing(const SurfaceHit& hit, glm::vec3, glm::vec3 unit_direction, float footprint_m) const {
+glm::vec3 LightField::outgoing(const SurfaceHit& hit, glm::vec3, glm::vec3 unit_direction, float footprint_m,
+                               glm::vec3* irradiance) const {
+  if (irradiance) *irradiance = glm::vec3(0.0f);
   const SurfacePoint point = surface_at(impl_->scene, hit, unit_direction, footprint_m);
   if (point.unlit || point.albedo == glm::vec3(0.0f)) return point.emission_cd_m2;
   const glm::vec3 direct =
       impl_->direct.irradiance(point.position_m, point.geometric_normal, point.normal, impl_->rays_cast.local());
   const glm::vec3 indirect = impl_->cache.indirect(point.position_m, point.normal);
+  if (irradiance) *irradiance = direct + indirect;
   return point.emission_cd_m2 + point.albedo * std::numbers::inv_pi_v<float> * (direct + indirect);
 }
 
-glm::vec3 LightField::along(glm::vec3 origin_m, glm::vec3 unit_direction, float spread_rad, SurfaceHit* hit) const {
+glm::vec3 LightField::along(glm::vec3 origin_m, glm::vec3 unit_direction, float spread_rad, SurfaceHit* hit,
+                            glm::vec3* irradiance) const {
   const SurfaceHit found = impl_->rays.closest(origin_m, unit_direction);
   if (hit) *hit = found;
   if (!found.hit) return impl_->scene.sky.radiance(unit_direction);
-  return outgoing(found, origin_m, unit_direction, found.t * spread_rad);
+  return outgoing(found, origin_m, unit_direction, found.t * spread_rad, irradiance);
 }
 
 std::uint64_t LightField::rays_cast() const {

@@ -31,10 +31,12 @@ class LightField {
   LightField& operator=(const LightField&) = delete;
 
   // Radiance in cd/m^2 that leaves the hit point towards -direction; footprint_m is the width of the ray's footprint on
-  // a surface facing it (for texture filtering). Thread-safe.
-  glm::vec3 outgoing(const SurfaceHit& hit, glm::vec3 origin_m, glm::vec3 unit_direction, float footprint_m) const;
+  // a surface facing it (for texture filtering); `irradiance` receives the light that arrives there (lux). Thread-safe.
+  glm::vec3 outgoing(const SurfaceHit& hit, glm::vec3 origin_m, glm::vec3 unit_direction, float footprint_m,
+                     glm::vec3* irradiance = nullptr) const;
   // Radiance along a ray: outgoing() of what it meets, else the sky. spread_rad is the ray's angular width.
-  glm::vec3 along(glm::vec3 origin_m, glm::vec3 unit_direction, float spread_rad, SurfaceHit* hit = nullptr) const;
+  glm::vec3 along(glm::vec3 origin_m, glm::vec3 unit_direction, float spread_rad, SurfaceHit* hit = nullptr,
+                  glm::vec3* irradiance = nullptr) const;
 
   // Content hash of everything the cache holds; equal between two builds of the same scene and options.
   std::string hash() const;
