@@ -31,14 +31,18 @@ void write_scene(const SceneOptions& options, const CommonOptions& common) {
   if (options.name.empty()) throw BadUsage("name a scene; probewalk scene --list shows them");
   if (options.output.empty()) throw BadUsage("name the file to write with -o FILE.glb");
   if (options.output.extension() != ".glb")
-    throw BadUsage("-o " + options.output.string() + ": the scene is written as GLB; end the file's name in .glb");
+    throw BadUsage("-o " + options.output.string() +
+                   ": the scene is written as GLB; end the file's name in .glb");
   const std::vector<std::byte> bytes = make_procedural_glb(options.name);
-  write_file_atomically(options.output, std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+  write_file_atomically(options.output,
+                        std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
   if (common.json) {
-    const nlohmann::ordered_json result = {{"scene", options.name}, {"file", options.output.string()}, {"bytes", bytes.size()}};
+    const nlohmann::ordered_json result = {
+        {"scene", options.name}, {"file", options.output.string()}, {"bytes", bytes.size()}};
     std::printf("%s\n", result.dump(2).c_str());
   } else if (!common.quiet) {
-    std::fprintf(stderr, "wrote %s (%.1f MiB)\n", options.output.string().c_str(), static_cast<double>(bytes.size()) / 1048576.0);
+    std::fprintf(stderr, "wrote %s (%.1f MiB)\n", options.output.string().c_str(),
+                 static_cast<double>(bytes.size()) / 1048576.0);
   }
 }
 
@@ -52,8 +56,10 @@ void add_scene_command(CLI::App& app, CommonOptions& common) {
   command->add_flag("--list", options->list, "List the scenes and what they are for, then exit");
   add_common_options(*command, common);
   command->callback([options, &common] {
-    if (options->list) list_scenes(common);
-    else write_scene(*options, common);
+    if (options->list)
+      list_scenes(common);
+    else
+      write_scene(*options, common);
   });
 }
 

@@ -16,19 +16,23 @@ glm::dvec3 unit_or(glm::dvec3 v, glm::dvec3 otherwise) {
   return length > 1e-12 ? v / length : otherwise;
 }
 
-// The six faces of a box, each by its axis, its side, and the two axes that span it counter-clockwise from outside.
+// The six faces of a box, each by its axis, its side, and the two axes that span it counter-clockwise from
+// outside.
 struct BoxFace {
   int axis, side, u, v;
 };
-constexpr std::array<BoxFace, 6> kBoxFaces{{{0, 1, 1, 2}, {0, 0, 2, 1}, {1, 1, 2, 0}, {1, 0, 0, 2}, {2, 1, 0, 1}, {2, 0, 1, 0}}};
+constexpr std::array<BoxFace, 6> kBoxFaces{
+    {{0, 1, 1, 2}, {0, 0, 2, 1}, {1, 1, 2, 0}, {1, 0, 0, 2}, {2, 1, 0, 1}, {2, 0, 1, 0}}};
 
 }  // namespace
 
-Brush::Brush(Model& model, const std::string& object_name) : model_(&model), object_(model.add_object(object_name)) {}
+Brush::Brush(Model& model, const std::string& object_name)
+    : model_(&model), object_(model.add_object(object_name)) {}
 
 Brush Brush::at(glm::dvec3 position_m, double yaw_deg) const {
   Brush moved = *this;
-  moved.world_from_local_ = glm::rotate(glm::translate(world_from_local_, position_m), glm::radians(yaw_deg), glm::dvec3(0, 1, 0));
+  moved.world_from_local_ =
+      glm::rotate(glm::translate(world_from_local_, position_m), glm::radians(yaw_deg), glm::dvec3(0, 1, 0));
   return moved;
 }
 
@@ -44,7 +48,9 @@ Brush Brush::object(const std::string& object_name) const {
   return other;
 }
 
-glm::dvec3 Brush::world(glm::dvec3 local_m) const { return glm::dvec3(world_from_local_ * glm::dvec4(local_m, 1.0)); }
+glm::dvec3 Brush::world(glm::dvec3 local_m) const {
+  return glm::dvec3(world_from_local_ * glm::dvec4(local_m, 1.0));
+}
 
 std::uint32_t Brush::vertex(ModelMesh& to, glm::dvec3 local_m, glm::dvec3 local_normal, glm::dvec2 uv) const {
   to.positions_m.push_back(glm::vec3(world(local_m)));
@@ -73,10 +79,13 @@ void Brush::quad(MaterialId material, glm::dvec3 a, glm::dvec3 b, glm::dvec3 c, 
   face(material, {a, b, c, d}, {map(a), map(b), map(c), map(d)});
 }
 
-void Brush::picture(MaterialId material, glm::dvec3 a, glm::dvec3 b, glm::dvec3 c, glm::dvec3 d, glm::dvec2 uv_lower,
-                    glm::dvec2 uv_upper) {
+void Brush::picture(MaterialId material, glm::dvec3 a, glm::dvec3 b, glm::dvec3 c, glm::dvec3 d,
+                    glm::dvec2 uv_lower, glm::dvec2 uv_upper) {
   face(material, {a, b, c, d},
-       {{uv_lower.x, uv_upper.y}, {uv_upper.x, uv_upper.y}, {uv_upper.x, uv_lower.y}, {uv_lower.x, uv_lower.y}});
+       {{uv_lower.x, uv_upper.y},
+        {uv_upper.x, uv_upper.y},
+        {uv_upper.x, uv_lower.y},
+        {uv_lower.x, uv_lower.y}});
 }
 
 void Brush::box(MaterialId material, glm::dvec3 lower, glm::dvec3 upper) {
@@ -87,8 +96,10 @@ void Brush::box(MaterialId material, glm::dvec3 lower, glm::dvec3 upper) {
       corner[i][f.u] = i == 1 || i == 2 ? upper[f.u] : lower[f.u];
       corner[i][f.v] = i >= 2 ? upper[f.v] : lower[f.v];
     }
-    if (upper[f.u] - lower[f.u] >= upper[f.v] - lower[f.v]) quad(material, corner[0], corner[1], corner[2], corner[3]);
-    else quad(material, corner[1], corner[2], corner[3], corner[0]);
+    if (upper[f.u] - lower[f.u] >= upper[f.v] - lower[f.v])
+      quad(material, corner[0], corner[1], corner[2], corner[3]);
+    else
+      quad(material, corner[1], corner[2], corner[3], corner[0]);
   }
 }
 
@@ -134,14 +145,16 @@ void Brush::cushion(MaterialId material, glm::dvec3 lower, glm::dvec3 upper, dou
     }
     for (int j = 0; j + 1 < n; ++j) {
       for (int i = 0; i + 1 < n; ++i) {
-        const std::uint32_t a = first + static_cast<std::uint32_t>(j * n + i), b = a + 1, d = a + static_cast<std::uint32_t>(n), c = d + 1;
+        const std::uint32_t a = first + static_cast<std::uint32_t>(j * n + i), b = a + 1,
+                            d = a + static_cast<std::uint32_t>(n), c = d + 1;
         for (const std::uint32_t corner : {a, b, c, a, c, d}) to.indices.push_back(corner);
       }
     }
   }
 }
 
-void Brush::tube(MaterialId material, const std::vector<glm::dvec3>& points, const std::vector<double>& radii, int sides) {
+void Brush::tube(MaterialId material, const std::vector<glm::dvec3>& points, const std::vector<double>& radii,
+                 int sides) {
   ModelMesh& to = mesh(material);
   const std::size_t count = points.size();
   std::vector<std::uint32_t> ring_start(count);
@@ -149,7 +162,8 @@ void Brush::tube(MaterialId material, const std::vector<glm::dvec3>& points, con
   glm::dvec3 first_direction{0.0}, last_direction{0.0};
   double along = 0.0;
   for (std::size_t k = 0; k < count; ++k) {
-    const glm::dvec3 direction = unit_or(points[std::min(k + 1, count - 1)] - points[k == 0 ? 0 : k - 1], {0, 1, 0});
+    const glm::dvec3 direction =
+        unit_or(points[std::min(k + 1, count - 1)] - points[k == 0 ? 0 : k - 1], {0, 1, 0});
     if (k == 0) first_direction = direction;
     last_direction = direction;
     side = unit_or(side - direction * glm::dot(side, direction), {1, 0, 0});
@@ -172,7 +186,8 @@ void Brush::tube(MaterialId material, const std::vector<glm::dvec3>& points, con
   for (const bool at_end : {false, true}) {
     const std::uint32_t ring = at_end ? ring_start.back() : ring_start.front();
     const auto first = static_cast<std::uint32_t>(to.positions_m.size());
-    const glm::vec3 normal = glm::vec3(glm::normalize(glm::dmat3(world_from_local_) * (at_end ? last_direction : -first_direction)));
+    const glm::vec3 normal = glm::vec3(
+        glm::normalize(glm::dmat3(world_from_local_) * (at_end ? last_direction : -first_direction)));
     for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(sides); ++i) {
       const glm::vec3 position = to.positions_m[ring + i];
       to.positions_m.push_back(position);
@@ -180,7 +195,8 @@ void Brush::tube(MaterialId material, const std::vector<glm::dvec3>& points, con
       to.uvs.push_back(glm::vec2(static_cast<float>(i), 0.0f) / static_cast<float>(sides));
     }
     for (std::uint32_t i = 1; i + 1 < static_cast<std::uint32_t>(sides); ++i) {
-      for (const std::uint32_t corner : {0u, at_end ? i : i + 1, at_end ? i + 1 : i}) to.indices.push_back(first + corner);
+      for (const std::uint32_t corner : {0u, at_end ? i : i + 1, at_end ? i + 1 : i})
+        to.indices.push_back(first + corner);
     }
   }
 }
@@ -201,7 +217,8 @@ void Brush::lathe(MaterialId material, glm::dvec3 foot, const std::vector<glm::d
     for (int i = 0; i <= sides; ++i) {
       const double angle = kTurn_rad * (i % sides) / sides;
       const glm::dvec3 radial{std::sin(angle), 0.0, std::cos(angle)};
-      vertex(to, foot + profile[k].x * radial + glm::dvec3(0, profile[k].y, 0), out.x * radial + glm::dvec3(0, out.y, 0),
+      vertex(to, foot + profile[k].x * radial + glm::dvec3(0, profile[k].y, 0),
+             out.x * radial + glm::dvec3(0, out.y, 0),
              glm::dvec2(kTurn_rad * 0.2 * i / sides, along) / tile(material));
     }
   }
@@ -225,8 +242,8 @@ void Brush::ball(MaterialId material, glm::dvec3 centre, double radius, int side
   lathe(material, centre, profile, sides);
 }
 
-void Brush::sheet(MaterialId material, int columns, int rows, const std::function<glm::dvec3(double, double)>& point,
-                  glm::dvec2 size_m) {
+void Brush::sheet(MaterialId material, int columns, int rows,
+                  const std::function<glm::dvec3(double, double)>& point, glm::dvec2 size_m) {
   ModelMesh& to = mesh(material);
   const auto first = static_cast<std::uint32_t>(to.positions_m.size());
   const bool once = size_m == glm::dvec2(0.0);
@@ -234,7 +251,8 @@ void Brush::sheet(MaterialId material, int columns, int rows, const std::functio
   for (int j = 0; j <= rows; ++j) {
     for (int i = 0; i <= columns; ++i) {
       const double u = static_cast<double>(i) / columns, v = static_cast<double>(j) / rows;
-      const glm::dvec3 du = point(u + step, v) - point(u - step, v), dv = point(u, v + step) - point(u, v - step);
+      const glm::dvec3 du = point(u + step, v) - point(u - step, v),
+                       dv = point(u, v + step) - point(u, v - step);
       vertex(to, point(u, v), unit_or(glm::cross(du, dv), {0, 1, 0}),
              once ? glm::dvec2(u, 1.0 - v) : glm::dvec2(u, 1.0 - v) * size_m / tile(material));
     }
@@ -243,7 +261,9 @@ void Brush::sheet(MaterialId material, int columns, int rows, const std::functio
   for (std::uint32_t j = 0; j < static_cast<std::uint32_t>(rows); ++j) {
     for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(columns); ++i) {
       const std::uint32_t a = first + j * stride + i, b = a + 1, d = a + stride, c = d + 1;
-      const auto coincide = [&](std::uint32_t x, std::uint32_t y) { return to.positions_m[x] == to.positions_m[y]; };
+      const auto coincide = [&](std::uint32_t x, std::uint32_t y) {
+        return to.positions_m[x] == to.positions_m[y];
+      };
       if (!coincide(a, b)) to.indices.insert(to.indices.end(), {a, b, c});  // rows may shrink to a point
       if (!coincide(c, d)) to.indices.insert(to.indices.end(), {a, c, d});
     }

@@ -10,8 +10,8 @@
 
 namespace probewalk::procedural {
 
-// All lengths are metres in the brush's local frame. Faces are mapped in metres (divided by the material's tile_m)
-// unless said otherwise. Cheap to copy: a copy draws into the same object.
+// All lengths are metres in the brush's local frame. Faces are mapped in metres (divided by the material's
+// tile_m) unless said otherwise. Cheap to copy: a copy draws into the same object.
 class Brush {
  public:
   Brush(Model& model, const std::string& object_name);
@@ -29,8 +29,8 @@ class Brush {
   // Corners counter-clockwise seen from the front. The texture's u runs along a-b.
   void quad(MaterialId material, glm::dvec3 a, glm::dvec3 b, glm::dvec3 c, glm::dvec3 d);
   // One whole picture: a = lower left, b = lower right, c = upper right, d = upper left.
-  void picture(MaterialId material, glm::dvec3 a, glm::dvec3 b, glm::dvec3 c, glm::dvec3 d, glm::dvec2 uv_lower = {0, 0},
-               glm::dvec2 uv_upper = {1, 1});
+  void picture(MaterialId material, glm::dvec3 a, glm::dvec3 b, glm::dvec3 c, glm::dvec3 d,
+               glm::dvec2 uv_lower = {0, 0}, glm::dvec2 uv_upper = {1, 1});
   // Wood grain (the texture's u) runs along the longer edge of every face.
   void box(MaterialId material, glm::dvec3 lower, glm::dvec3 upper);
   // As box, every face showing the texture point (u, v): one colour out of a texture of colours.
@@ -38,20 +38,23 @@ class Brush {
   // A box with rounded edges and smooth normals: cushions, upholstery, ceramics.
   void cushion(MaterialId material, glm::dvec3 lower, glm::dvec3 upper, double radius, int segments = 2);
   // A closed, smooth tube through points with a radius at each; flat ends.
-  void tube(MaterialId material, const std::vector<glm::dvec3>& points, const std::vector<double>& radii, int sides = 8);
+  void tube(MaterialId material, const std::vector<glm::dvec3>& points, const std::vector<double>& radii,
+            int sides = 8);
   void rod(MaterialId material, glm::dvec3 from, glm::dvec3 to, double radius, int sides = 8);
-  // A surface of revolution about the vertical axis through `foot`; profile = (radius, height), outside seen from
-  // the side where heights grow. Single layer: as thick as its profile draws it.
+  // A surface of revolution about the vertical axis through `foot`; profile = (radius, height), outside seen
+  // from the side where heights grow. Single layer: as thick as its profile draws it.
   void lathe(MaterialId material, glm::dvec3 foot, const std::vector<glm::dvec2>& profile, int sides = 16);
   void ball(MaterialId material, glm::dvec3 centre, double radius, int sides = 12);
   // A smooth single-layer sheet, point(u, v) with u, v in [0, 1]; front where d/du x d/dv points.
   // `size_m` is how much cloth it takes (texture mapping); zero shows the texture once.
-  void sheet(MaterialId material, int columns, int rows, const std::function<glm::dvec3(double, double)>& point,
-             glm::dvec2 size_m);
+  void sheet(MaterialId material, int columns, int rows,
+             const std::function<glm::dvec3(double, double)>& point, glm::dvec2 size_m);
 
  private:
   ModelMesh& mesh(MaterialId material) const { return model_->objects[object_].meshes[material]; }
-  double tile(MaterialId material) const { return model_->materials[static_cast<std::size_t>(material)].tile_m; }
+  double tile(MaterialId material) const {
+    return model_->materials[static_cast<std::size_t>(material)].tile_m;
+  }
   std::uint32_t vertex(ModelMesh& to, glm::dvec3 local_m, glm::dvec3 local_normal, glm::dvec2 uv) const;
   void face(MaterialId material, const glm::dvec3 (&corners)[4], const glm::dvec2 (&uvs)[4]);
 

@@ -1,5 +1,5 @@
-// Furniture and fittings of the sample house. Each piece is drawn into the brush's object, standing on y = 0 of its
-// frame, centred in x and z, its front towards +z; sizes in metres.
+// Furniture and fittings of the sample house. Each piece is drawn into the brush's object, standing on y = 0
+// of its frame, centred in x and z, its front towards +z; sizes in metres.
 #pragma once
 
 #include "content/scene/procedural/brush.h"
@@ -22,8 +22,10 @@ void draw_desk(Brush brush, const Palette& p);          // with drawers, lamp an
 
 // Storage
 void draw_bookcase(Brush brush, const Palette& p, MaterialId wood, double width, double height, int seed);
-void draw_wall_shelf(Brush brush, const Palette& p, double width, int seed);  // y = 0 is the shelf's underside
-void draw_books(Brush brush, const Palette& p, double width, double max_height, double depth, int seed);  // a standing row
+void draw_wall_shelf(Brush brush, const Palette& p, double width,
+                     int seed);  // y = 0 is the shelf's underside
+void draw_books(Brush brush, const Palette& p, double width, double max_height, double depth,
+                int seed);  // a standing row
 void draw_book_pile(Brush brush, const Palette& p, int count, int seed);
 void draw_sideboard(Brush brush, const Palette& p, MaterialId wood, double width);
 void draw_wardrobe(Brush brush, const Palette& p, double width);
@@ -45,8 +47,10 @@ void draw_single_bed(Brush brush, const Palette& p);
 
 // Small things
 void draw_rug(Brush brush, MaterialId rug, MaterialId edge, double width, double depth);
-void draw_painting(Brush brush, MaterialId painting, MaterialId frame, double width, double height);  // centre, wall at z = 0
-void draw_curtain(Brush brush, const Palette& p, double width, double height, double folds);  // a single-layer sheet below its rod
+void draw_painting(Brush brush, MaterialId painting, MaterialId frame, double width,
+                   double height);  // centre, wall at z = 0
+void draw_curtain(Brush brush, const Palette& p, double width, double height,
+                  double folds);  // a single-layer sheet below its rod
 void draw_curtain_rod(Brush brush, const Palette& p, double width);
 void draw_vase(Brush brush, MaterialId clay, double height);
 void draw_fruit_bowl(Brush brush, const Palette& p);
@@ -58,7 +62,7 @@ void draw_floor_lamp(Brush brush, const Palette& p, double candela);
 void draw_table_lamp(Brush brush, const Palette& p, double candela);
 void draw_pendant(Brush brush, const Palette& p, double drop, double candela);  // hangs down from y = 0
 void draw_globe_pendant(Brush brush, const Palette& p, double drop, double radius, double candela);
-void draw_ceiling_lamp(Brush brush, const Palette& p, double candela);                // disc under y = 0
-void draw_reading_spot(Brush brush, const Palette& p, double candela);                // desk lamp with a spot light
+void draw_ceiling_lamp(Brush brush, const Palette& p, double candela);  // disc under y = 0
+void draw_reading_spot(Brush brush, const Palette& p, double candela);  // desk lamp with a spot light
 
 }  // namespace probewalk::procedural

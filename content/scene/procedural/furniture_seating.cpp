@@ -12,18 +12,24 @@ void draw_sofa(Brush brush, const Palette& p, double width) {
   brush.cushion(p.sofa_cloth, {-half, 0.24, -0.46}, {half, 0.80, -0.20}, 0.09, 3);
   for (const double side : {-1.0, 1.0}) {
     const double outer = side * half, inner = side * (half - arm);
-    brush.cushion(p.sofa_cloth, {std::min(outer, inner), 0.24, -0.45}, {std::max(outer, inner), 0.62, 0.46}, 0.07, 3);
+    brush.cushion(p.sofa_cloth, {std::min(outer, inner), 0.24, -0.45}, {std::max(outer, inner), 0.62, 0.46},
+                  0.07, 3);
   }
   const int seats = width > 1.9 ? 3 : 2;
   const double seat = (width - 2 * arm) / seats;
   for (int i = 0; i < seats; ++i) {
     const double left = -half + arm + i * seat;
     brush.cushion(p.sofa_cloth, {left + 0.006, 0.285, -0.24}, {left + seat - 0.006, 0.45, 0.46}, 0.05, 3);
-    brush.at({left + 0.5 * seat, 0.44, -0.17}).turned({1, 0, 0}, -12).cushion(
-        p.sofa_cloth, {-0.5 * seat + 0.012, 0.0, -0.07}, {0.5 * seat - 0.012, 0.42, 0.10}, 0.07, 3);
+    brush.at({left + 0.5 * seat, 0.44, -0.17})
+        .turned({1, 0, 0}, -12)
+        .cushion(p.sofa_cloth, {-0.5 * seat + 0.012, 0.0, -0.07}, {0.5 * seat - 0.012, 0.42, 0.10}, 0.07, 3);
   }
-  brush.at({-half + arm + 0.24, 0.455, 0.05}, 12).turned({1, 0, 0}, -24).cushion(p.cushion_rust, {-0.21, 0, -0.06}, {0.21, 0.40, 0.06}, 0.058, 3);
-  brush.at({half - arm - 0.26, 0.455, 0.04}, -16).turned({1, 0, 0}, -26).cushion(p.cushion_teal, {-0.21, 0, -0.06}, {0.21, 0.40, 0.06}, 0.058, 3);
+  brush.at({-half + arm + 0.24, 0.455, 0.05}, 12)
+      .turned({1, 0, 0}, -24)
+      .cushion(p.cushion_rust, {-0.21, 0, -0.06}, {0.21, 0.40, 0.06}, 0.058, 3);
+  brush.at({half - arm - 0.26, 0.455, 0.04}, -16)
+      .turned({1, 0, 0}, -26)
+      .cushion(p.cushion_teal, {-0.21, 0, -0.06}, {0.21, 0.40, 0.06}, 0.058, 3);
 }
 
 void draw_armchair(Brush brush, const Palette& p, MaterialId cloth) {
@@ -31,8 +37,11 @@ void draw_armchair(Brush brush, const Palette& p, MaterialId cloth) {
     for (const double z : {-0.30, 0.30}) brush.rod(p.walnut, {1.1 * x, 0, 1.1 * z}, {x, 0.25, z}, 0.015);
   brush.cushion(cloth, {-0.38, 0.22, -0.36}, {0.38, 0.34, 0.38}, 0.05, 3);
   brush.cushion(cloth, {-0.29, 0.33, -0.26}, {0.29, 0.46, 0.40}, 0.06, 3);
-  brush.at({0, 0.28, -0.28}).turned({1, 0, 0}, -13).cushion(cloth, {-0.36, 0, -0.10}, {0.36, 0.66, 0.07}, 0.08, 3);
-  for (const double x : {-0.36, 0.36}) brush.cushion(cloth, {x - 0.07, 0.28, -0.34}, {x + 0.07, 0.60, 0.37}, 0.065, 3);
+  brush.at({0, 0.28, -0.28})
+      .turned({1, 0, 0}, -13)
+      .cushion(cloth, {-0.36, 0, -0.10}, {0.36, 0.66, 0.07}, 0.08, 3);
+  for (const double x : {-0.36, 0.36})
+    brush.cushion(cloth, {x - 0.07, 0.28, -0.34}, {x + 0.07, 0.60, 0.37}, 0.065, 3);
 }
 
 void draw_chair(Brush brush, const Palette&, MaterialId wood) {
@@ -47,7 +56,8 @@ void draw_chair(Brush brush, const Palette&, MaterialId wood) {
   brush.cushion(wood, {-0.22, 0.43, -0.215}, {0.22, 0.462, 0.225}, 0.014);
   const Brush back = brush.at({0, 0.43, -0.187}).turned({1, 0, 0}, -8);
   Brush(back).cushion(wood, {-0.215, 0.36, -0.016}, {0.215, 0.445, 0.016}, 0.012);
-  for (const double x : {-0.115, -0.038, 0.038, 0.115}) Brush(back).rod(wood, {x, 0.02, 0}, {x, 0.37, 0}, 0.007, 6);
+  for (const double x : {-0.115, -0.038, 0.038, 0.115})
+    Brush(back).rod(wood, {x, 0.02, 0}, {x, 0.37, 0}, 0.007, 6);
 }
 
 void draw_stool(Brush brush, const Palette& p, double height) {
@@ -56,9 +66,11 @@ void draw_stool(Brush brush, const Palette& p, double height) {
       brush.rod(p.black_metal, {0.20 * x, 0, 0.20 * z}, {0.12 * x, height - 0.03, 0.12 * z}, 0.011, 6);
     }
   const double ring = 0.32 * height, reach = 0.20 - 0.08 * 0.32;
-  const glm::dvec3 corners[4] = {{-reach, ring, -reach}, {reach, ring, -reach}, {reach, ring, reach}, {-reach, ring, reach}};
+  const glm::dvec3 corners[4] = {
+      {-reach, ring, -reach}, {reach, ring, -reach}, {reach, ring, reach}, {-reach, ring, reach}};
   for (int i = 0; i < 4; ++i) brush.rod(p.black_metal, corners[i], corners[(i + 1) % 4], 0.008, 6);
-  brush.lathe(p.oak, {0, height - 0.035, 0}, {{0, 0}, {0.165, 0}, {0.175, 0.012}, {0.17, 0.03}, {0.0, 0.035}}, 20);
+  brush.lathe(p.oak, {0, height - 0.035, 0}, {{0, 0}, {0.165, 0}, {0.175, 0.012}, {0.17, 0.03}, {0.0, 0.035}},
+              20);
 }
 
 void draw_bench(Brush brush, const Palette&, MaterialId wood, double width) {

@@ -19,7 +19,8 @@ void draw_books(Brush brush, const Palette& p, double width, double max_height, 
       x += 0.05;
       continue;
     }
-    brush.box_of_colour(p.books, {x + 0.0008, 0, -0.5 * depth}, {x + thick - 0.0008, tall, -0.5 * depth + deep}, {hue, 0.5});
+    brush.box_of_colour(p.books, {x + 0.0008, 0, -0.5 * depth},
+                        {x + thick - 0.0008, tall, -0.5 * depth + deep}, {hue, 0.5});
     x += thick;
   }
 }
@@ -30,7 +31,8 @@ void draw_book_pile(Brush brush, const Palette& p, int count, int seed) {
   for (int i = 0; i < count; ++i) {
     const double thick = 0.02 + 0.02 * hash01(i, 0, s), wide = 0.13 - 0.006 * i, deep = 0.10 - 0.005 * i;
     const double hue = (std::floor(kBookColours * hash01(i, 3, s)) + 0.5) / kBookColours;
-    brush.at({0, y, 0}, 30.0 * (hash01(i, 1, s) - 0.5)).box_of_colour(p.books, {-wide, 0.0003, -deep}, {wide, thick, deep}, {hue, 0.5});
+    brush.at({0, y, 0}, 30.0 * (hash01(i, 1, s) - 0.5))
+        .box_of_colour(p.books, {-wide, 0.0003, -deep}, {wide, thick, deep}, {hue, 0.5});
     y += thick;
   }
 }
@@ -48,11 +50,14 @@ void draw_bookcase(Brush brush, const Palette& p, MaterialId wood, double width,
   const double bay = (width - kBoard) / bays;
   for (int i = 0; i <= shelves; ++i) {
     const double y = 0.08 + i * step;
-    brush.box(wood, {-half + kBoard, y, -0.5 * kDepth + 0.012}, {half - kBoard, y + kBoard, 0.5 * kDepth - 0.005});
+    brush.box(wood, {-half + kBoard, y, -0.5 * kDepth + 0.012},
+              {half - kBoard, y + kBoard, 0.5 * kDepth - 0.005});
   }
   for (int b = 0; b < bays; ++b) {
     const double left = -half + b * bay;
-    if (b > 0) brush.box(wood, {left, 0.08, -0.5 * kDepth + 0.013}, {left + kBoard, height - kBoard, 0.5 * kDepth - 0.006});
+    if (b > 0)
+      brush.box(wood, {left, 0.08, -0.5 * kDepth + 0.013},
+                {left + kBoard, height - kBoard, 0.5 * kDepth - 0.006});
     for (int i = 0; i < shelves; ++i) {
       const auto s = static_cast<std::uint32_t>(seed);
       const Brush shelf = brush.at({left + 0.5 * kBoard + 0.5 * bay, 0.08 + i * step + kBoard, -0.005});
@@ -62,7 +67,8 @@ void draw_bookcase(Brush brush, const Palette& p, MaterialId wood, double width,
         draw_vase(Brush(shelf).at({-0.18 * space, 0, 0}), kind < 0.07 ? p.ceramic : p.terracotta, 0.22);
         draw_book_pile(Brush(shelf).at({0.22 * space, 0, 0}), p, 4, seed + 31 * i + b);
       } else if (kind < 0.40) {
-        draw_books(Brush(shelf).at({-0.20 * space, 0, 0}), p, 0.58 * space, tall, 0.24, seed + 17 * i + 5 * b);
+        draw_books(Brush(shelf).at({-0.20 * space, 0, 0}), p, 0.58 * space, tall, 0.24,
+                   seed + 17 * i + 5 * b);
         draw_vase(Brush(shelf).at({0.30 * space, 0, 0}), p.ceramic_dark, 0.16);
       } else {
         draw_books(shelf, p, space, tall, 0.24, seed + 17 * i + 5 * b);
@@ -74,7 +80,8 @@ void draw_bookcase(Brush brush, const Palette& p, MaterialId wood, double width,
 void draw_wall_shelf(Brush brush, const Palette& p, double width, int seed) {
   const double half = 0.5 * width;
   brush.box(p.oak, {-half, 0, 0}, {half, 0.03, 0.22});
-  for (const double x : {-half + 0.12, half - 0.14}) brush.box(p.black_metal, {x, -0.12, 0.0}, {x + 0.02, -0.0005, 0.02});
+  for (const double x : {-half + 0.12, half - 0.14})
+    brush.box(p.black_metal, {x, -0.12, 0.0}, {x + 0.02, -0.0005, 0.02});
   draw_books(brush.at({-0.2 * width, 0.03, 0.11}), p, 0.5 * width, 0.22, 0.18, seed);
   draw_vase(brush.at({0.30 * width, 0.03, 0.11}), p.terracotta, 0.18);
 }
@@ -114,17 +121,22 @@ void draw_clothes_rail(Brush brush, const Palette& p, double width) {
     brush.rod(p.black_metal, {x, 0.012, -0.24}, {x, 0.012, 0.24}, 0.012);
   }
   brush.rod(p.black_metal, {-half, 1.62, 0}, {half, 1.62, 0}, 0.012);
-  const MaterialId cloths[] = {p.linen, p.cushion_rust, p.blanket_blue, p.sofa_cloth, p.armchair_cloth, p.cushion_teal, p.leather};
+  const MaterialId cloths[] = {p.linen,          p.cushion_rust, p.blanket_blue, p.sofa_cloth,
+                               p.armchair_cloth, p.cushion_teal, p.leather};
   const int garments = static_cast<int>(width / 0.11);
   for (int i = 0; i < garments; ++i) {
     const double x = -half + 0.12 + (width - 0.24) * i / (garments - 1.0);
     const double length = 0.75 + 0.35 * hash01(i, 0, 201);
     const MaterialId cloth = cloths[static_cast<std::size_t>(7 * hash01(i, 1, 201))];
     brush.rod(p.black_metal, {x, 1.52, 0}, {x, 1.605, 0}, 0.003, 5);
-    brush.sheet(cloth, 6, 6, [&](double u, double v) {  // hangs from shoulders, widening, with a soft fold
-      const double z = (u - 0.5) * (0.40 + 0.10 * (1.0 - v)), shoulder = 0.10 * std::abs(2.0 * u - 1.0);
-      return glm::dvec3(x + 0.018 * std::sin(9.0 * u + 2.0 * v + i), 1.52 - shoulder - length * (1.0 - v), z);
-    }, {0.5, length});
+    brush.sheet(cloth, 6, 6,
+                [&](double u, double v) {  // hangs from shoulders, widening, with a soft fold
+                  const double z = (u - 0.5) * (0.40 + 0.10 * (1.0 - v)),
+                               shoulder = 0.10 * std::abs(2.0 * u - 1.0);
+                  return glm::dvec3(x + 0.018 * std::sin(9.0 * u + 2.0 * v + i),
+                                    1.52 - shoulder - length * (1.0 - v), z);
+                },
+                {0.5, length});
   }
 }
 
@@ -148,7 +160,8 @@ void draw_fireplace(Brush brush, const Palette& p) {
   brush.box(p.black_metal, {-kHalf - 0.05, 0, kDepth}, {kHalf + 0.05, 0.02, kDepth + 0.35});
   for (int i = 0; i < 5; ++i) {
     const double a = hash01(i, 0, 211) - 0.5, b = hash01(i, 1, 211) - 0.5;
-    brush.rod(p.bark, {-0.26 + 0.05 * i, 0.13 + 0.035 * i, 0.12 + 0.04 * a}, {0.24 - 0.03 * i, 0.14 + 0.045 * i, 0.20 + 0.10 * b}, 0.03, 8);
+    brush.rod(p.bark, {-0.26 + 0.05 * i, 0.13 + 0.035 * i, 0.12 + 0.04 * a},
+              {0.24 - 0.03 * i, 0.14 + 0.045 * i, 0.20 + 0.10 * b}, 0.03, 8);
   }
   brush.cushion(p.embers, {-0.24, 0.095, 0.09}, {0.24, 0.125, 0.26}, 0.012);
 }

@@ -7,14 +7,21 @@ void draw_table(Brush brush, MaterialId top, MaterialId legs, double width, doub
   brush.cushion(top, {-x, height - 0.035, -z}, {x, height, z}, 0.012);
   for (const double side : {-1.0, 1.0}) {
     for (const double end : {-1.0, 1.0})
-      brush.tube(legs, {{side * (x - 0.07), 0, end * (z - 0.07)}, {side * (x - 0.10), height - 0.034, end * (z - 0.10)}}, {0.014, 0.024}, 10);
-    brush.box(legs, {-x + 0.12, height - 0.095, side * (z - 0.10) - 0.010}, {x - 0.12, height - 0.035, side * (z - 0.10) + 0.010});
-    brush.box(legs, {side * (x - 0.10) - 0.010, height - 0.094, -z + 0.12}, {side * (x - 0.10) + 0.010, height - 0.0355, z - 0.12});
+      brush.tube(
+          legs,
+          {{side * (x - 0.07), 0, end * (z - 0.07)}, {side * (x - 0.10), height - 0.034, end * (z - 0.10)}},
+          {0.014, 0.024}, 10);
+    brush.box(legs, {-x + 0.12, height - 0.095, side * (z - 0.10) - 0.010},
+              {x - 0.12, height - 0.035, side * (z - 0.10) + 0.010});
+    brush.box(legs, {side * (x - 0.10) - 0.010, height - 0.094, -z + 0.12},
+              {side * (x - 0.10) + 0.010, height - 0.0355, z - 0.12});
   }
 }
 
 void draw_round_table(Brush brush, MaterialId top, MaterialId leg, double radius, double height) {
-  brush.lathe(top, {0, height - 0.03, 0}, {{0, 0}, {radius - 0.01, 0}, {radius, 0.012}, {radius, 0.02}, {radius - 0.01, 0.03}, {0, 0.03}}, 28);
+  brush.lathe(top, {0, height - 0.03, 0},
+              {{0, 0}, {radius - 0.01, 0}, {radius, 0.012}, {radius, 0.02}, {radius - 0.01, 0.03}, {0, 0.03}},
+              28);
   for (int i = 0; i < 3; ++i) {
     const double angle = 2.0944 * i + 0.4;
     const glm::dvec3 out{std::sin(angle), 0, std::cos(angle)};
@@ -31,7 +38,8 @@ void draw_coffee_table(Brush brush, const Palette& p) {
     brush.box(p.black_metal, {x, 0.335, -0.30}, {x + 0.02, 0.3595, 0.30});
   }
   brush.box(p.walnut, {-0.55, 0.12, -0.295}, {0.55, 0.14, 0.295});
-  for (const double x : {-0.575, 0.555}) brush.box(p.black_metal, {x, 0.105, -0.31}, {x + 0.02, 0.1195, 0.31});
+  for (const double x : {-0.575, 0.555})
+    brush.box(p.black_metal, {x, 0.105, -0.31}, {x + 0.02, 0.1195, 0.31});
 }
 
 void draw_desk(Brush brush, const Palette& p) {

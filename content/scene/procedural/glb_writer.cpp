@@ -19,7 +19,8 @@ using Json = nlohmann::ordered_json;  // members in the order in which they are 
 // Numbers of the glTF 2.0 specification.
 constexpr int kFloat = 5126, kUnsignedShort = 5123, kUnsignedInt = 5125;
 constexpr int kArrayBuffer = 34962, kElementArrayBuffer = 34963;
-constexpr std::uint32_t kGlbMagic = 0x46546C67, kGlbVersion = 2, kJsonChunk = 0x4E4F534A, kBinaryChunk = 0x004E4942;
+constexpr std::uint32_t kGlbMagic = 0x46546C67, kGlbVersion = 2, kJsonChunk = 0x4E4F534A,
+                        kBinaryChunk = 0x004E4942;
 
 // The shortest decimal that reads back as the same float; keeps the text small and free of double tails.
 double shortest(float value) {
@@ -30,8 +31,12 @@ double shortest(float value) {
   }
   return std::strtod(text, nullptr);
 }
-Json json_of(glm::vec3 v) { return {shortest(v.x), shortest(v.y), shortest(v.z)}; }
-Json json_of(glm::dvec3 v) { return {v.x, v.y, v.z}; }
+Json json_of(glm::vec3 v) {
+  return {shortest(v.x), shortest(v.y), shortest(v.z)};
+}
+Json json_of(glm::dvec3 v) {
+  return {v.x, v.y, v.z};
+}
 
 // The binary chunk: data of one kind lies together, in one buffer view per kind.
 class Binary {
@@ -74,9 +79,10 @@ class Writer {
 
  private:
   void write_header() {
-    root_["asset"] = {{"version", "2.0"},
-                      {"generator", "Probewalk"},
-                      {"copyright", "CC0 1.0 - sample scene \"" + model_.name + "\" of Probewalk, made by code"}};
+    root_["asset"] = {
+        {"version", "2.0"},
+        {"generator", "Probewalk"},
+        {"copyright", "CC0 1.0 - sample scene \"" + model_.name + "\" of Probewalk, made by code"}};
     root_["extensionsUsed"] = Json::array();
     root_["scene"] = 0;
     Json scene = {{"name", model_.name}};
@@ -96,7 +102,9 @@ class Writer {
       Json color = json_of(m.color);
       color.push_back(1.0);
       Json& surface = material["pbrMetallicRoughness"];
-      surface = {{"baseColorFactor", color}, {"metallicFactor", shortest(m.metallic)}, {"roughnessFactor", shortest(m.roughness)}};
+      surface = {{"baseColorFactor", color},
+                 {"metallicFactor", shortest(m.metallic)},
+                 {"roughnessFactor", shortest(m.roughness)}};
       if (m.texture >= 0) surface["baseColorTexture"] = {{"index", m.texture}};
       const float peak = std::max({m.emissive_cd_m2.x, m.emissive_cd_m2.y, m.emissive_cd_m2.z});
       if (peak > 0.0f) {
@@ -144,8 +152,11 @@ class Writer {
   template <class T>
   Json accessor(const std::string& view, const std::vector<T>& values, int component, const char* type) {
     const std::size_t offset = binary_.append(view, values);
-    root_["accessors"].push_back({{"bufferView", view}, {"byteOffset", offset}, {"componentType", component},
-                                  {"count", values.size()}, {"type", type}});
+    root_["accessors"].push_back({{"bufferView", view},
+                                  {"byteOffset", offset},
+                                  {"componentType", component},
+                                  {"count", values.size()},
+                                  {"type", type}});
     return root_["accessors"].size() - 1;
   }
 
@@ -157,11 +168,16 @@ class Writer {
       Json entry = {{"name", light.name}, {"color", json_of(light.color)}, {"intensity", light.intensity}};
       Json node = {{"name", light.name}};
       switch (light.kind) {
-        case ModelLight::Kind::kPoint: entry["type"] = "point"; break;
-        case ModelLight::Kind::kDirectional: entry["type"] = "directional"; break;
+        case ModelLight::Kind::kPoint:
+          entry["type"] = "point";
+          break;
+        case ModelLight::Kind::kDirectional:
+          entry["type"] = "directional";
+          break;
         case ModelLight::Kind::kSpot:
           entry["type"] = "spot";
-          entry["spot"] = {{"innerConeAngle", light.inner_cone_rad}, {"outerConeAngle", light.outer_cone_rad}};
+          entry["spot"] = {{"innerConeAngle", light.inner_cone_rad},
+                           {"outerConeAngle", light.outer_cone_rad}};
           break;
       }
       if (light.kind != ModelLight::Kind::kDirectional) node["translation"] = json_of(light.position_m);
@@ -195,7 +211,8 @@ class Writer {
 
   void write_images() {
     if (model_.textures.empty()) return;
-    root_["samplers"] = Json::array({{{"magFilter", 9729}, {"minFilter", 9987}, {"wrapS", 10497}, {"wrapT", 10497}}});
+    root_["samplers"] =
+        Json::array({{{"magFilter", 9729}, {"minFilter", 9987}, {"wrapS", 10497}, {"wrapT", 10497}}});
     root_["textures"] = Json::array();
     root_["images"] = Json::array();
     for (const ModelTexture& texture : model_.textures) {
@@ -205,7 +222,8 @@ class Writer {
             const auto* bytes = static_cast<const std::uint8_t*>(data);
             static_cast<std::vector<std::uint8_t>*>(context)->assign(bytes, bytes + size);
           },
-          &png, texture.width_px, texture.height_px, texture.channels, texture.pixels.data(), texture.width_px * texture.channels);
+          &png, texture.width_px, texture.height_px, texture.channels, texture.pixels.data(),
+          texture.width_px * texture.channels);
       const std::string view = "png " + std::to_string(root_["images"].size());
       image_length_[view] = png.size();
       binary_.append(view, png);
@@ -225,11 +243,14 @@ class Writer {
     root_["bufferViews"] = Json::array();
     for (const auto& [name, bytes] : binary_.views()) {
       const auto image = image_length_.find(name);
-      Json view = {{"name", name}, {"buffer", 0}, {"byteOffset", binary.size()},
+      Json view = {{"name", name},
+                   {"buffer", 0},
+                   {"byteOffset", binary.size()},
                    {"byteLength", image == image_length_.end() ? bytes.size() : image->second}};
       if (name == "positions" || name == "normals") view["byteStride"] = sizeof(glm::vec3);
       if (name == "texture coordinates") view["byteStride"] = sizeof(glm::vec2);
-      if (image == image_length_.end()) view["target"] = name.starts_with("indices") ? kElementArrayBuffer : kArrayBuffer;
+      if (image == image_length_.end())
+        view["target"] = name.starts_with("indices") ? kElementArrayBuffer : kArrayBuffer;
       number[name] = root_["bufferViews"].size();
       root_["bufferViews"].push_back(view);
       binary += bytes;
@@ -266,6 +287,8 @@ class Writer {
 
 }  // namespace
 
-std::vector<std::byte> write_glb(const Model& model) { return Writer(model).write(); }
+std::vector<std::byte> write_glb(const Model& model) {
+  return Writer(model).write();
+}
 
 }  // namespace probewalk::procedural

@@ -8,8 +8,9 @@
 
 namespace probewalk::procedural {
 
-// One node per object, light and room. Sky and start are `extras` of the scene (probewalk_sky, probewalk_start), rooms
-// are `extras` of their nodes (probewalk_room, probewalk_room_min, probewalk_room_max).
+// One node per object, light and room. Sky and start are `extras` of the scene (probewalk_sky,
+// probewalk_start), rooms are `extras` of their nodes (probewalk_room, probewalk_room_min,
+// probewalk_room_max).
 std::vector<std::byte> write_glb(const Model& model);
 
 }  // namespace probewalk::procedural

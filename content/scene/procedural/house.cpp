@@ -14,8 +14,8 @@ Model make_house() {
   furnish_upper_floor(model, palette);
   build_courtyard(model, palette);
 
-  // A hazy afternoon. Sun and sky are far weaker than outdoors on earth, so that one exposure shows the lamp-lit rooms
-  // and the courtyard together, as a photographer's fill light would.
+  // A hazy afternoon. Sun and sky are far weaker than outdoors on earth, so that one exposure shows the
+  // lamp-lit rooms and the courtyard together, as a photographer's fill light would.
   ModelLight sun;
   sun.name = "Sun";
   sun.kind = ModelLight::Kind::kDirectional;

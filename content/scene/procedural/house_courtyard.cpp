@@ -17,11 +17,13 @@ void build_ground_and_walls(Model& model, const Palette& p) {
   walls.box(p.brick, {-kWall_m, -0.2, kSouth_m}, {12 + kWall_m, kWallTop_m, kSouth_m + kWall_m});
   walls.box(p.trim, {-kWall_m - 0.04, kWallTop_m, 9.26}, {0.04, kWallTop_m + 0.06, kSouth_m - 0.04});
   walls.box(p.trim, {12 - 0.04, kWallTop_m, 9.26}, {12 + kWall_m + 0.04, kWallTop_m + 0.06, kSouth_m - 0.04});
-  walls.box(p.trim, {-kWall_m - 0.04, kWallTop_m, kSouth_m - 0.04}, {12 + kWall_m + 0.04, kWallTop_m + 0.06, kSouth_m + kWall_m + 0.04});
+  walls.box(p.trim, {-kWall_m - 0.04, kWallTop_m, kSouth_m - 0.04},
+            {12 + kWall_m + 0.04, kWallTop_m + 0.06, kSouth_m + kWall_m + 0.04});
 }
 
 // A bed with a stone rim, filled to just below it.
-void build_bed(Brush brush, MaterialId rim, MaterialId filling, glm::dvec2 lower, glm::dvec2 upper, double height, double fill) {
+void build_bed(Brush brush, MaterialId rim, MaterialId filling, glm::dvec2 lower, glm::dvec2 upper,
+               double height, double fill) {
   const double y = kCourtyard_m - 0.05, top = kCourtyard_m + height, w = 0.12;
   brush.box(rim, {lower.x, y, lower.y}, {upper.x, top, lower.y + w});
   brush.box(rim, {lower.x, y, upper.y - w}, {upper.x, top, upper.y});
@@ -33,7 +35,9 @@ void build_bed(Brush brush, MaterialId rim, MaterialId filling, glm::dvec2 lower
 }  // namespace
 
 void build_courtyard(Model& model, const Palette& p) {
-  const auto piece = [&](const char* name, glm::dvec3 at, double yaw_deg = 0.0) { return Brush(model, name).at(at, yaw_deg); };
+  const auto piece = [&](const char* name, glm::dvec3 at, double yaw_deg = 0.0) {
+    return Brush(model, name).at(at, yaw_deg);
+  };
   build_ground_and_walls(model, p);
   build_bed(Brush(model, "Lawn"), p.marble, p.grass, {0.9, 11.9}, {5.3, 15.6}, 0.07, 0.05);
   TreeShape tree;

@@ -6,7 +6,9 @@ namespace probewalk::procedural {
 namespace {
 
 void furnish_living_room(Model& model, const Palette& p) {
-  const auto piece = [&](const char* name, glm::dvec3 at, double yaw_deg = 0.0) { return Brush(model, name).at(at, yaw_deg); };
+  const auto piece = [&](const char* name, glm::dvec3 at, double yaw_deg = 0.0) {
+    return Brush(model, name).at(at, yaw_deg);
+  };
   draw_rug(piece("Rug living", {4.2, 0.002, 6.75}), p.rug_living, p.linen, 2.9, 2.0);
   draw_sofa(piece("Sofa", {4.22, 0, 5.14}), p, 2.3);
   draw_coffee_table(piece("Coffee table", {4.2, 0.014, 6.55}), p);
@@ -31,7 +33,9 @@ void furnish_living_room(Model& model, const Palette& p) {
 }
 
 void furnish_kitchen(Model& model, const Palette& p) {
-  const auto piece = [&](const char* name, glm::dvec3 at, double yaw_deg = 0.0) { return Brush(model, name).at(at, yaw_deg); };
+  const auto piece = [&](const char* name, glm::dvec3 at, double yaw_deg = 0.0) {
+    return Brush(model, name).at(at, yaw_deg);
+  };
   draw_fridge(piece("Fridge", {9.35, 0, 4.906}), p);
   draw_counter(piece("Counter north", {10.53, 0, 4.905}), p, 1.72, false, true);
   draw_counter(piece("Counter corner", {11.694, 0, 4.905}), p, 0.60, false, false);
@@ -60,7 +64,9 @@ void furnish_kitchen(Model& model, const Palette& p) {
 }
 
 void furnish_hall(Model& model, const Palette& p) {
-  const auto piece = [&](const char* name, glm::dvec3 at, double yaw_deg = 0.0) { return Brush(model, name).at(at, yaw_deg); };
+  const auto piece = [&](const char* name, glm::dvec3 at, double yaw_deg = 0.0) {
+    return Brush(model, name).at(at, yaw_deg);
+  };
   // The front door stays shut.
   Brush door = piece("Front door", {6.9, 0, -0.14});
   door.box(p.counter_front, {-0.469, 0.004, -0.025}, {0.469, 2.118, 0.025});
@@ -81,7 +87,9 @@ void furnish_hall(Model& model, const Palette& p) {
 }
 
 void furnish_library(Model& model, const Palette& p) {
-  const auto piece = [&](const char* name, glm::dvec3 at, double yaw_deg = 0.0) { return Brush(model, name).at(at, yaw_deg); };
+  const auto piece = [&](const char* name, glm::dvec3 at, double yaw_deg = 0.0) {
+    return Brush(model, name).at(at, yaw_deg);
+  };
   draw_bookcase(piece("Bookcase west", {0.915, 0, 4.245}, 180), p, p.walnut, 1.78, 2.4, 21);
   draw_bookcase(piece("Bookcase east", {3.96, 0, 4.245}, 180), p, p.walnut, 1.9, 2.4, 22);
   draw_bookcase(piece("Bookcase door", {4.845, 0, 0.88}, -90), p, p.walnut, 1.3, 2.4, 23);

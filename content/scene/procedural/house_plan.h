@@ -1,5 +1,6 @@
-// The sample house on paper: rooms, walls with their openings, slabs. The shell is built from it, furniture is not in it.
-// x runs east, z runs south, y up; ground floor at y = 0, upper floor at y = 3; the courtyard lies south of the house.
+// The sample house on paper: rooms, walls with their openings, slabs. The shell is built from it, furniture
+// is not in it. x runs east, z runs south, y up; ground floor at y = 0, upper floor at y = 3; the courtyard
+// lies south of the house.
 #pragma once
 
 #include <string>
@@ -19,7 +20,7 @@ struct PlanRoom {
   std::string name;
   glm::dvec3 lower_m, upper_m;
   MaterialId wall, floor, ceiling;
-  MaterialId wall_low = -1;      // up to kDado_m above the floor, where it is set
+  MaterialId wall_low = -1;  // up to kDado_m above the floor, where it is set
   bool has_skirting = true;
 };
 inline constexpr double kDado_m = 1.25;
@@ -27,17 +28,17 @@ inline constexpr double kDado_m = 1.25;
 struct PlanOpening {
   enum class Kind { kDoorway, kWindow, kGlazedDoors };
   Kind kind;
-  double from_m, to_m;      // along the wall: world x or z
-  double bottom_m, top_m;   // world y
+  double from_m, to_m;        // along the wall: world x or z
+  double bottom_m, top_m;     // world y
   int columns = 1, rows = 1;  // panes of a window
 };
 
 struct PlanWall {
   std::string name;
-  bool along_z;                // else along x. The front of a wall along x faces south, of one along z faces west
-  double front_m;              // world z (or x) of the front face
-  double from_m, to_m;         // along the wall
-  double thickness_m;          // backwards from the front
+  bool along_z;         // else along x. The front of a wall along x faces south, of one along z faces west
+  double front_m;       // world z (or x) of the front face
+  double from_m, to_m;  // along the wall
+  double thickness_m;   // backwards from the front
   double bottom_m, top_m;
   std::vector<PlanOpening> openings;
 };

@@ -8,7 +8,9 @@ namespace {
 constexpr double kY = kUpperFloor_m;
 
 void furnish_landing(Model& model, const Palette& p) {
-  const auto piece = [&](const char* name, glm::dvec3 at, double yaw_deg = 0.0) { return Brush(model, name).at(at, yaw_deg); };
+  const auto piece = [&](const char* name, glm::dvec3 at, double yaw_deg = 0.0) {
+    return Brush(model, name).at(at, yaw_deg);
+  };
   draw_rug(piece("Rug landing", {7.3, kY + 0.002, 2.2}), p.rug_library, p.leather, 2.2, 1.5);
   draw_bench(piece("Window seat", {7.4, kY, 0.27}), p, p.oak, 1.6);
   draw_armchair(piece("Landing chair", {5.85, kY, 0.85}, 40), p, p.armchair_cloth);
@@ -22,14 +24,17 @@ void furnish_landing(Model& model, const Palette& p) {
 }
 
 void furnish_bedroom(Model& model, const Palette& p) {
-  const auto piece = [&](const char* name, glm::dvec3 at, double yaw_deg = 0.0) { return Brush(model, name).at(at, yaw_deg); };
+  const auto piece = [&](const char* name, glm::dvec3 at, double yaw_deg = 0.0) {
+    return Brush(model, name).at(at, yaw_deg);
+  };
   const double x = 3.65;
   draw_rug(piece("Rug bedroom", {x, kY + 0.002, 6.9}), p.rug_bedroom, p.linen, 3.0, 1.7);
   draw_double_bed(piece("Double bed", {x, kY, 5.685}), p);
   for (const double side : {-1.0, 1.0}) {
     draw_nightstand(piece("Nightstand", {x + 1.16 * side, kY, 4.81}), p);
     draw_table_lamp(piece("Bedside lamp", {x + 1.16 * side, kY + 0.4605, 4.78}), p, 210);
-    draw_painting(piece("Painting over bed", {x + 0.42 * side, kY + 1.65, 4.6}), p.paintings[side < 0 ? 2 : 1], p.oak, 0.5, 0.68);
+    draw_painting(piece("Painting over bed", {x + 0.42 * side, kY + 1.65, 4.6}),
+                  p.paintings[side < 0 ? 2 : 1], p.oak, 0.5, 0.68);
   }
   draw_book_pile(piece("Bedside books", {x + 1.3, kY + 0.4605, 4.9}, 30), p, 2, 41);
   draw_wardrobe(piece("Wardrobe", {6.605, kY, 7.55}, -90), p, 2.5);
@@ -42,7 +47,9 @@ void furnish_bedroom(Model& model, const Palette& p) {
 }
 
 void furnish_childrens_room(Model& model, const Palette& p) {
-  const auto piece = [&](const char* name, glm::dvec3 at, double yaw_deg = 0.0) { return Brush(model, name).at(at, yaw_deg); };
+  const auto piece = [&](const char* name, glm::dvec3 at, double yaw_deg = 0.0) {
+    return Brush(model, name).at(at, yaw_deg);
+  };
   draw_rug(piece("Rug children", {9.3, kY + 0.002, 6.7}), p.rug_living, p.linen, 2.2, 1.6);
   draw_single_bed(piece("Single bed", {11.48, kY, 5.69}), p);
   draw_table(piece("Children's desk", {9.5, kY, 8.62}), p.oak, p.oak, 1.5, 0.65, 0.72);
@@ -56,16 +63,20 @@ void furnish_childrens_room(Model& model, const Palette& p) {
   const MaterialId blocks[] = {p.toy_red, p.toy_yellow, p.toy_blue};
   for (int i = 0; i < 6; ++i) {
     const double x = 9.0 + 0.16 * (i % 3), z = 6.55 + 0.17 * (i / 3);
-    piece("Toy block", {x, kY + 0.0145, z}, 25.0 * i).cushion(blocks[i % 3], {-0.05, 0, -0.05}, {0.05, 0.1, 0.05}, 0.006, 1);
+    piece("Toy block", {x, kY + 0.0145, z}, 25.0 * i)
+        .cushion(blocks[i % 3], {-0.05, 0, -0.05}, {0.05, 0.1, 0.05}, 0.006, 1);
   }
-  piece("Toy block", {9.08, kY + 0.115, 6.56}, 40).cushion(p.toy_yellow, {-0.05, 0, -0.05}, {0.05, 0.1, 0.05}, 0.006, 1);
+  piece("Toy block", {9.08, kY + 0.115, 6.56}, 40)
+      .cushion(p.toy_yellow, {-0.05, 0, -0.05}, {0.05, 0.1, 0.05}, 0.006, 1);
   piece("Toy ball", {9.85, kY + 0.135, 6.95}).ball(p.toy_red, {0, 0, 0}, 0.12, 18);
   draw_globe_pendant(piece("Children's pendant", {9.3, kUpperCeiling_m, 6.7}), p, 0.5, 0.15, 150);
   draw_potted_plant(piece("Plant children", {11.5, kY, 8.5}), p, p.terracotta, 1.0, 54);
 }
 
 void furnish_bathroom(Model& model, const Palette& p) {
-  const auto piece = [&](const char* name, glm::dvec3 at, double yaw_deg = 0.0) { return Brush(model, name).at(at, yaw_deg); };
+  const auto piece = [&](const char* name, glm::dvec3 at, double yaw_deg = 0.0) {
+    return Brush(model, name).at(at, yaw_deg);
+  };
   draw_bathtub(piece("Bathtub", {2.90, kY, 1.65}, 90), p);
   draw_washstand(piece("Washstand", {3.65, kY, 4.145}, 180), p);
   draw_toilet(piece("Toilet", {4.55, kY, 0.43}), p);
@@ -77,7 +88,9 @@ void furnish_bathroom(Model& model, const Palette& p) {
 }
 
 void furnish_dressing_room(Model& model, const Palette& p) {
-  const auto piece = [&](const char* name, glm::dvec3 at, double yaw_deg = 0.0) { return Brush(model, name).at(at, yaw_deg); };
+  const auto piece = [&](const char* name, glm::dvec3 at, double yaw_deg = 0.0) {
+    return Brush(model, name).at(at, yaw_deg);
+  };
   draw_clothes_rail(piece("Clothes rail", {0.42, kY, 2.0}, 90), p, 2.4);
   draw_sideboard(piece("Dressing chest", {1.865, kY, 1.6}, -90), p, p.walnut, 1.4);
   draw_stool(piece("Dressing stool", {1.3, kY, 3.3}), p, 0.46);

@@ -20,7 +20,8 @@ MaterialId Model::add(ModelMaterial material) {
 
 std::size_t Model::add_object(const std::string& wanted_name) {
   const auto taken = [&](const std::string& candidate) {
-    return std::any_of(objects.begin(), objects.end(), [&](const ModelObject& o) { return o.name == candidate; });
+    return std::any_of(objects.begin(), objects.end(),
+                       [&](const ModelObject& o) { return o.name == candidate; });
   };
   std::string unique = wanted_name;
   for (int number = 2; taken(unique); ++number) unique = wanted_name + " " + std::to_string(number);
@@ -35,7 +36,8 @@ void Model::drop_unused() {
     std::size_t kept = 0;
     for (const int old : used) {
       new_index[static_cast<std::size_t>(old)] = static_cast<int>(kept);
-      if (kept != static_cast<std::size_t>(old)) items[kept] = std::move(items[static_cast<std::size_t>(old)]);
+      if (kept != static_cast<std::size_t>(old))
+        items[kept] = std::move(items[static_cast<std::size_t>(old)]);
       ++kept;
     }
     items.resize(kept);
@@ -47,7 +49,8 @@ void Model::drop_unused() {
   const std::vector<int> new_material = compact(materials, used_materials);
   for (ModelObject& object : objects) {
     std::map<MaterialId, ModelMesh> renamed;
-    for (auto& [material, mesh] : object.meshes) renamed.emplace(new_material[static_cast<std::size_t>(material)], std::move(mesh));
+    for (auto& [material, mesh] : object.meshes)
+      renamed.emplace(new_material[static_cast<std::size_t>(material)], std::move(mesh));
     object.meshes = std::move(renamed);
   }
   for (const ModelMaterial& material : materials)
@@ -58,7 +61,9 @@ void Model::drop_unused() {
 }
 
 glm::vec3 srgb(std::uint32_t rgb) {
-  const auto channel = [&](int shift) { return srgb_decode(static_cast<float>((rgb >> shift) & 255u) / 255.0f); };
+  const auto channel = [&](int shift) {
+    return srgb_decode(static_cast<float>((rgb >> shift) & 255u) / 255.0f);
+  };
   return {channel(16), channel(8), channel(0)};
 }
 

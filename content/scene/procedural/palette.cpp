@@ -13,19 +13,22 @@ class Mixer {
     m.name = name, m.color = srgb(color), m.roughness = roughness, m.metallic = metallic;
     return model_.add(m);
   }
-  MaterialId textured(const char* name, TextureId texture, double tile_m, float roughness = 0.9f, std::uint32_t tint = 0xFFFFFF) {
+  MaterialId textured(const char* name, TextureId texture, double tile_m, float roughness = 0.9f,
+                      std::uint32_t tint = 0xFFFFFF) {
     ModelMaterial m;
     m.name = name, m.color = srgb(tint), m.texture = texture, m.tile_m = tile_m, m.roughness = roughness;
     return model_.add(m);
   }
   MaterialId leaves(const char* name, TextureId texture, std::uint32_t tint) {
     ModelMaterial m;
-    m.name = name, m.color = srgb(tint), m.texture = texture, m.roughness = 0.7f, m.alpha_mask = true, m.double_sided = true;
+    m.name = name, m.color = srgb(tint), m.texture = texture, m.roughness = 0.7f, m.alpha_mask = true,
+    m.double_sided = true;
     return model_.add(m);
   }
   MaterialId glowing(const char* name, std::uint32_t color, float radiance_cd_m2) {
     ModelMaterial m;
-    m.name = name, m.color = glm::vec3(0.7f), m.emissive_cd_m2 = srgb(color) * radiance_cd_m2, m.double_sided = true;
+    m.name = name, m.color = glm::vec3(0.7f), m.emissive_cd_m2 = srgb(color) * radiance_cd_m2,
+    m.double_sided = true;
     return model_.add(m);
   }
 
@@ -50,9 +53,12 @@ Palette make_palette(Model& model) {
 
   p.oak_floor = mix.textured("oak floor", model.add(plank_floor_texture(0xC49A6C, 0x8F6840)), 1.6, 0.45f);
   p.stone_floor = mix.textured("stone floor", model.add(stone_floor_texture()), 1.2, 0.4f);
-  p.bath_floor = mix.textured("bath floor", model.add(tile_texture("floor tiles", 0x5B6E73, 0xB9B4AA, 4, 4)), 0.8, 0.35f);
-  p.bath_wall = mix.textured("bath wall", model.add(tile_texture("wall tiles", 0xDDE4E0, 0xB4B8B3, 4, 8)), 0.8, 0.25f);
-  p.kitchen_wall = mix.textured("kitchen wall", model.add(tile_texture("kitchen tiles", 0x6F8F86, 0xC9C6BC, 8, 8)), 0.8, 0.25f);
+  p.bath_floor = mix.textured("bath floor", model.add(tile_texture("floor tiles", 0x5B6E73, 0xB9B4AA, 4, 4)),
+                              0.8, 0.35f);
+  p.bath_wall =
+      mix.textured("bath wall", model.add(tile_texture("wall tiles", 0xDDE4E0, 0xB4B8B3, 4, 8)), 0.8, 0.25f);
+  p.kitchen_wall = mix.textured(
+      "kitchen wall", model.add(tile_texture("kitchen tiles", 0x6F8F86, 0xC9C6BC, 8, 8)), 0.8, 0.25f);
   p.paving = mix.textured("paving", model.add(paving_texture()), 2.4);
   p.grass = mix.textured("grass", model.add(grass_texture()), 1.0);
   p.brick = mix.textured("brick", model.add(brick_texture()), 0.96);
@@ -83,8 +89,10 @@ Palette make_palette(Model& model) {
   p.curtain = mix.textured("curtain", cloth, 0.2, 1.0f, 0xF2E6CF);
   model.materials[static_cast<std::size_t>(p.curtain)].double_sided = true;
   p.leather = mix.plain("leather", 0x6E4630, 0.5f);
-  p.rug_living = mix.textured("rug living", model.add(knot_rug_texture("pale rug", 0xD9CCB4, 0x35525A, 0xB7633E)), 1.0, 1.0f);
-  p.rug_library = mix.textured("rug library", model.add(knot_rug_texture("red rug", 0x7C2F2A, 0xD8BE8C, 0x2E3F4F)), 1.0, 1.0f);
+  p.rug_living = mix.textured(
+      "rug living", model.add(knot_rug_texture("pale rug", 0xD9CCB4, 0x35525A, 0xB7633E)), 1.0, 1.0f);
+  p.rug_library = mix.textured(
+      "rug library", model.add(knot_rug_texture("red rug", 0x7C2F2A, 0xD8BE8C, 0x2E3F4F)), 1.0, 1.0f);
   const TextureId stripes = model.add(stripe_rug_texture());
   p.rug_bedroom = mix.textured("rug bedroom", stripes, 1.0, 1.0f);
   p.rug_hall = mix.textured("rug hall", stripes, 1.0, 1.0f, 0xE0D8C8);

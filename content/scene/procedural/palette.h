@@ -15,10 +15,12 @@ struct Palette {
   // Woodwork and metal
   MaterialId oak, walnut, walnut_glossy, trim, window_frame, door, black_metal, brass, chrome;
   // Cloth
-  MaterialId linen, cushion_rust, cushion_teal, sofa_cloth, armchair_cloth, bedding, blanket_blue, blanket_check, curtain, leather;
+  MaterialId linen, cushion_rust, cushion_teal, sofa_cloth, armchair_cloth, bedding, blanket_blue,
+      blanket_check, curtain, leather;
   MaterialId rug_living, rug_library, rug_bedroom, rug_hall;
   // Things
-  MaterialId ceramic, ceramic_dark, terracotta, marble, counter_front, counter_top, black_glass, books, paper, fruit_orange, fruit_green;
+  MaterialId ceramic, ceramic_dark, terracotta, marble, counter_front, counter_top, black_glass, books, paper,
+      fruit_orange, fruit_green;
   MaterialId leaf, leaf_dark, leaf_olive, bark, toy_red, toy_yellow, toy_blue;
   // Light
   MaterialId lamp_shade, lamp_globe, ceiling_lamp, embers;

@@ -11,7 +11,8 @@ std::vector<double> grid_lines(double length, std::vector<double> lines) {
   std::erase_if(lines, [&](double line) { return line <= 1e-6 || line >= length - 1e-6; });
   lines.push_back(0.0), lines.push_back(length);
   std::sort(lines.begin(), lines.end());
-  lines.erase(std::unique(lines.begin(), lines.end(), [](double a, double b) { return b - a < 1e-6; }), lines.end());
+  lines.erase(std::unique(lines.begin(), lines.end(), [](double a, double b) { return b - a < 1e-6; }),
+              lines.end());
   return lines;
 }
 
@@ -38,9 +39,10 @@ void draw_panel(Brush brush, const Panel& panel) {
       if (!solid(i, j)) continue;
       const double x0 = xs[i], x1 = xs[i + 1], y0 = ys[j], y1 = ys[j + 1];
       const glm::dvec3 middle{0.5 * (x0 + x1), 0.5 * (y0 + y1), 0.0};
-      brush.quad(panel.material(brush.world(middle + glm::dvec3(0, 0, kProbe_m))), {x0, y0, 0}, {x1, y0, 0}, {x1, y1, 0}, {x0, y1, 0});
-      brush.quad(panel.material(brush.world(middle + glm::dvec3(0, 0, back - kProbe_m))), {x1, y0, back}, {x0, y0, back},
-                 {x0, y1, back}, {x1, y1, back});
+      brush.quad(panel.material(brush.world(middle + glm::dvec3(0, 0, kProbe_m))), {x0, y0, 0}, {x1, y0, 0},
+                 {x1, y1, 0}, {x0, y1, 0});
+      brush.quad(panel.material(brush.world(middle + glm::dvec3(0, 0, back - kProbe_m))), {x1, y0, back},
+                 {x0, y0, back}, {x0, y1, back}, {x1, y1, back});
       if (!solid(i - 1, j)) brush.quad(panel.edge, {x0, y0, back}, {x0, y0, 0}, {x0, y1, 0}, {x0, y1, back});
       if (!solid(i + 1, j)) brush.quad(panel.edge, {x1, y0, 0}, {x1, y0, back}, {x1, y1, back}, {x1, y1, 0});
       if (!solid(i, j - 1)) brush.quad(panel.edge, {x0, y0, back}, {x1, y0, back}, {x1, y0, 0}, {x0, y0, 0});

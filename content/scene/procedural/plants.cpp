@@ -26,7 +26,8 @@ class Dice {
 };
 
 // One quad that shows a whole twig, its stem at `foot`, growing along `axis`, lying flat towards `facing`.
-void draw_leaf(Brush& brush, MaterialId leaf, glm::dvec3 foot, glm::dvec3 axis, glm::dvec3 facing, double size) {
+void draw_leaf(Brush& brush, MaterialId leaf, glm::dvec3 foot, glm::dvec3 axis, glm::dvec3 facing,
+               double size) {
   const glm::dvec3 up = glm::normalize(axis) * size;
   const glm::dvec3 across = glm::cross(axis, facing);
   const double length = glm::length(across);
@@ -39,8 +40,8 @@ struct Twig {
 };
 
 // A branch that bends upwards and splits; collects the places where leaves grow.
-void grow(Brush& brush, const Palette& p, Dice& dice, glm::dvec3 foot, glm::dvec3 direction, double length, double radius, int depth,
-          std::vector<Twig>& twigs) {
+void grow(Brush& brush, const Palette& p, Dice& dice, glm::dvec3 foot, glm::dvec3 direction, double length,
+          double radius, int depth, std::vector<Twig>& twigs) {
   std::vector<glm::dvec3> points{foot};
   std::vector<double> radii{radius};
   constexpr int kPieces = 4;
@@ -59,7 +60,8 @@ void grow(Brush& brush, const Palette& p, Dice& dice, glm::dvec3 foot, glm::dvec
     const auto k = std::min(static_cast<std::size_t>(at), points.size() - 2);
     const glm::dvec3 start = glm::mix(points[k], points[k + 1], at - static_cast<double>(k));
     const double turn = 2.0 * std::numbers::pi * (i + dice.between(-0.3, 0.3)) / children;
-    const glm::dvec3 side = glm::normalize(glm::cross(heading, glm::dvec3(std::cos(turn), 0.2, std::sin(turn))));
+    const glm::dvec3 side =
+        glm::normalize(glm::cross(heading, glm::dvec3(std::cos(turn), 0.2, std::sin(turn))));
     const glm::dvec3 out = glm::normalize(heading * (i == 0 ? 1.2 : 0.55) + side * dice.between(0.6, 1.0));
     grow(brush, p, dice, start, out, length * dice.between(0.52, 0.70), radii[k] * 0.62, depth + 1, twigs);
   }
@@ -70,7 +72,8 @@ void grow(Brush& brush, const Palette& p, Dice& dice, glm::dvec3 foot, glm::dvec
 void draw_tree(Brush brush, const Palette& p, MaterialId leaf, const TreeShape& shape) {
   Dice dice(shape.seed);
   std::vector<Twig> twigs;
-  grow(brush, p, dice, {0, -0.05, 0}, glm::normalize(glm::dvec3(0.05, 1, 0.03)), 0.46 * shape.height_m, shape.trunk_radius_m, 0, twigs);
+  grow(brush, p, dice, {0, -0.05, 0}, glm::normalize(glm::dvec3(0.05, 1, 0.03)), 0.46 * shape.height_m,
+       shape.trunk_radius_m, 0, twigs);
   for (int i = 0; i < shape.leaves; ++i) {
     const Twig& twig = twigs[static_cast<std::size_t>(dice.roll() * static_cast<double>(twigs.size()))];
     const glm::dvec3 axis = glm::normalize(twig.direction + 1.1 * dice.direction());
@@ -83,7 +86,9 @@ void draw_tree(Brush brush, const Palette& p, MaterialId leaf, const TreeShape& 
 void draw_potted_plant(Brush brush, const Palette& p, MaterialId pot, double height_m, std::uint32_t seed) {
   Dice dice(seed);
   const double r = 0.10 + 0.05 * height_m, pot_height = 0.16 + 0.12 * height_m;
-  brush.lathe(pot, {0, 0, 0}, {{0, 0}, {0.78 * r, 0}, {r, pot_height}, {0.9 * r, pot_height}, {0.88 * r, pot_height - 0.03}}, 20);
+  brush.lathe(pot, {0, 0, 0},
+              {{0, 0}, {0.78 * r, 0}, {r, pot_height}, {0.9 * r, pot_height}, {0.88 * r, pot_height - 0.03}},
+              20);
   brush.lathe(p.earth, {0, pot_height - 0.031, 0}, {{0.885 * r, 0}, {0, 0.001}}, 20);
   const int stems = 3 + static_cast<int>(2 * height_m);
   for (int s = 0; s < stems; ++s) {
@@ -91,48 +96,58 @@ void draw_potted_plant(Brush brush, const Palette& p, MaterialId pot, double hei
     const glm::dvec3 lean{std::cos(turn), 0, std::sin(turn)};
     std::vector<glm::dvec3> points;
     std::vector<double> radii;
-    const double tall = (height_m - pot_height) * dice.between(0.55, 0.9), reach = height_m * dice.between(0.06, 0.20);
+    const double tall = (height_m - pot_height) * dice.between(0.55, 0.9),
+                 reach = height_m * dice.between(0.06, 0.20);
     constexpr int kPieces = 5;
     for (int i = 0; i <= kPieces; ++i) {
       const double t = static_cast<double>(i) / kPieces;
-      points.push_back(lean * (0.25 * r + reach * t * t) + glm::dvec3(0, pot_height - 0.04 + (tall + 0.04) * t, 0));
+      points.push_back(lean * (0.25 * r + reach * t * t) +
+                       glm::dvec3(0, pot_height - 0.04 + (tall + 0.04) * t, 0));
       radii.push_back(0.009 * (1.0 - 0.6 * t) * (0.7 + 0.5 * height_m));
     }
     brush.tube(p.bark, points, radii, 6);
     for (int i = 2; i <= kPieces; ++i) {
       for (int l = 0; l < 4; ++l) {
         const double around = turn + 1.57 * l + 0.8 * i + dice.between(-0.3, 0.3);
-        const glm::dvec3 axis = glm::normalize(glm::dvec3(std::cos(around), dice.between(0.1, 0.9), std::sin(around)));
-        draw_leaf(brush, p.leaf_dark, points[static_cast<std::size_t>(i)], axis, glm::normalize(glm::dvec3(0, 1, 0) + 0.4 * dice.direction()),
+        const glm::dvec3 axis =
+            glm::normalize(glm::dvec3(std::cos(around), dice.between(0.1, 0.9), std::sin(around)));
+        draw_leaf(brush, p.leaf_dark, points[static_cast<std::size_t>(i)], axis,
+                  glm::normalize(glm::dvec3(0, 1, 0) + 0.4 * dice.direction()),
                   dice.between(0.16, 0.26) * (0.55 + 0.45 * height_m));
       }
     }
   }
 }
 
-void draw_bush(Brush brush, const Palette& p, MaterialId leaf, glm::dvec3 size_m, int leaves, std::uint32_t seed) {
+void draw_bush(Brush brush, const Palette& p, MaterialId leaf, glm::dvec3 size_m, int leaves,
+               std::uint32_t seed) {
   Dice dice(seed);
   for (int i = 0; i < 9; ++i) {
     const glm::dvec3 d = dice.direction();
-    brush.tube(p.bark, {{0.1 * d.x, -0.02, 0.1 * d.z}, {0.3 * size_m.x * d.x, 0.6 * size_m.y, 0.3 * size_m.z * d.z}}, {0.012, 0.005}, 5);
+    brush.tube(p.bark,
+               {{0.1 * d.x, -0.02, 0.1 * d.z}, {0.3 * size_m.x * d.x, 0.6 * size_m.y, 0.3 * size_m.z * d.z}},
+               {0.012, 0.005}, 5);
   }
   for (int i = 0; i < leaves; ++i) {
     const glm::dvec3 d = dice.direction();
     const double shell = std::cbrt(dice.between(0.25, 1.0));
     const glm::dvec3 foot = 0.5 * size_m * d * shell + glm::dvec3(0, 0.5 * size_m.y, 0);
-    draw_leaf(brush, leaf, foot, glm::normalize(d + 0.8 * dice.direction() + glm::dvec3(0, 0.4, 0)), glm::normalize(d + glm::dvec3(0, 0.7, 0)),
-              dice.between(0.10, 0.17));
+    draw_leaf(brush, leaf, foot, glm::normalize(d + 0.8 * dice.direction() + glm::dvec3(0, 0.4, 0)),
+              glm::normalize(d + glm::dvec3(0, 0.7, 0)), dice.between(0.10, 0.17));
   }
 }
 
-void draw_grass_tufts(Brush brush, const Palette& p, double width_m, double depth_m, int tufts, std::uint32_t seed) {
+void draw_grass_tufts(Brush brush, const Palette& p, double width_m, double depth_m, int tufts,
+                      std::uint32_t seed) {
   Dice dice(seed);
   for (int t = 0; t < tufts; ++t) {
     const glm::dvec3 foot{(dice.roll() - 0.5) * width_m, 0.0, (dice.roll() - 0.5) * depth_m};
     for (int b = 0; b < 12; ++b) {
-      const double turn = dice.between(0, 2.0 * std::numbers::pi), tall = dice.between(0.25, 0.5), reach = dice.between(0.06, 0.22);
+      const double turn = dice.between(0, 2.0 * std::numbers::pi), tall = dice.between(0.25, 0.5),
+                   reach = dice.between(0.06, 0.22);
       const glm::dvec3 lean{std::cos(turn), 0, std::sin(turn)}, side{-0.006 * lean.z, 0, 0.006 * lean.x};
-      const glm::dvec3 knee = foot + 0.3 * reach * lean + glm::dvec3(0, 0.6 * tall, 0), tip = foot + reach * lean + glm::dvec3(0, tall, 0);
+      const glm::dvec3 knee = foot + 0.3 * reach * lean + glm::dvec3(0, 0.6 * tall, 0),
+                       tip = foot + reach * lean + glm::dvec3(0, tall, 0);
       brush.quad(p.grass, foot - side, foot + side, knee + 0.8 * side, knee - 0.8 * side);
       brush.quad(p.grass, knee - 0.8 * side, knee + 0.8 * side, tip + 0.1 * side, tip - 0.1 * side);
     }

@@ -16,7 +16,8 @@ struct Entry {
 };
 
 constexpr Entry kScenes[] = {
-    {"house", "the sample house: ten furnished rooms on two floors, a stair, a courtyard with a tree", procedural::make_house},
+    {"house", "the sample house: ten furnished rooms on two floors, a stair, a courtyard with a tree",
+     procedural::make_house},
     {"box-room", "one plain room with a block and one lamp", procedural::make_box_room},
     {"two-rooms", "two rooms with a doorway, a table on thin legs, a column", procedural::make_two_rooms},
     {"lattice", "hard case: two grilles of 2 cm bars across a room", procedural::make_lattice},

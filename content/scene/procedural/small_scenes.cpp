@@ -18,7 +18,8 @@ MaterialId add_plain(Model& model, const char* name, std::uint32_t color) {
 Colours add_colours(Model& model) {
   Colours c{};
   ModelMaterial floor;
-  floor.name = "floor", floor.texture = model.add(tile_texture("floor tiles", 0xB9A68C, 0x7F7466, 4, 4)), floor.color = glm::vec3(1.0f);
+  floor.name = "floor", floor.texture = model.add(tile_texture("floor tiles", 0xB9A68C, 0x7F7466, 4, 4)),
+  floor.color = glm::vec3(1.0f);
   c.floor = model.add(floor);
   c.wall = add_plain(model, "wall", 0xE8E4DA);
   c.red_wall = add_plain(model, "red wall", 0xB5523C);
@@ -83,7 +84,8 @@ Model make_two_rooms() {
   Brush(model, "Table").at({-3.2, 0, -0.9}).box(c.thing, {-0.6, 0.7, -0.35}, {0.6, 0.74, 0.35});
   Brush legs(model, "Table legs");
   for (const double x : {-3.75, -2.65})
-    for (const double z : {-1.2, -0.6}) legs.box(c.thing, {x - 0.013, 0, z - 0.013}, {x + 0.013, 0.7, z + 0.013});
+    for (const double z : {-1.2, -0.6})
+      legs.box(c.thing, {x - 0.013, 0, z - 0.013}, {x + 0.013, 0.7, z + 0.013});
   Brush(model, "Column").rod(c.thing, {3.2, -0.01, 0.6}, {3.2, 2.61, 0.6}, 0.2, 24);
   Brush(model, "Lamp panel").box(c.lamp, {-2.9, 2.55, -0.3}, {-2.1, 2.61, 0.3});
   add_point_light(model, {2.6, 2.2, -0.6}, 220);
@@ -127,9 +129,11 @@ Model make_grove() {
   const Palette p = make_palette(model);
   Brush(model, "Ground").box(p.grass, {-8, -0.3, -8}, {8, 0, 8});
   int number = 0;
-  for (const glm::dvec2 at : {glm::dvec2(-3.5, -3), {2.8, -4.2}, {4.5, 1.8}, {-4.4, 3.2}, {0.2, 5.6}, {-0.6, -6.2}}) {
+  for (const glm::dvec2 at :
+       {glm::dvec2(-3.5, -3), {2.8, -4.2}, {4.5, 1.8}, {-4.4, 3.2}, {0.2, 5.6}, {-0.6, -6.2}}) {
     TreeShape shape;
-    shape.height_m = 4.2 + 0.35 * number, shape.leaves = 1400, shape.seed = static_cast<std::uint32_t>(300 + number);
+    shape.height_m = 4.2 + 0.35 * number, shape.leaves = 1400,
+    shape.seed = static_cast<std::uint32_t>(300 + number);
     draw_tree(Brush(model, "Tree").at({at.x, 0, at.y}), p, number % 2 == 0 ? p.leaf : p.leaf_olive, shape);
     draw_bush(Brush(model, "Bush").at({0.72 * at.y, 0.0, -0.8 * at.x}), p, p.leaf_dark, {1.3, 1.0, 1.2}, 350,
               static_cast<std::uint32_t>(400 + number));
@@ -138,7 +142,8 @@ Model make_grove() {
   draw_grass_tufts(Brush(model, "Tufts").at({0, 0, 0}), p, 12, 12, 90, 501);
   ModelLight sun;
   sun.name = "Sun", sun.kind = ModelLight::Kind::kDirectional;
-  sun.direction = glm::normalize(glm::dvec3(-0.4, -0.8, 0.45)), sun.color = {1.0f, 0.95f, 0.85f}, sun.intensity = 6000.0;
+  sun.direction = glm::normalize(glm::dvec3(-0.4, -0.8, 0.45)), sun.color = {1.0f, 0.95f, 0.85f},
+  sun.intensity = 6000.0;
   model.lights.push_back(sun);
   model.sky = {{350.0f, 560.0f, 950.0f}, {1200.0f, 1300.0f, 1400.0f}, {300.0f, 320.0f, 220.0f}};
   model.rooms.push_back({"Grove", {-8, 0, -8}, {8, 7, 8}});

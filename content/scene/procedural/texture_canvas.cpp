@@ -20,12 +20,15 @@ ModelTexture fill_channels(const std::string& name, int width_px, int height_px,
   return texture;
 }
 
-std::int64_t wrap(std::int64_t value, std::int64_t period) { return ((value % period) + period) % period; }
+std::int64_t wrap(std::int64_t value, std::int64_t period) {
+  return ((value % period) + period) % period;
+}
 
 }  // namespace
 
 double hash01(std::int64_t x, std::int64_t y, std::uint32_t seed) {
-  std::uint64_t h = static_cast<std::uint64_t>(x) * 0x9E3779B97F4A7C15u ^ static_cast<std::uint64_t>(y) * 0xC2B2AE3D27D4EB4Fu ^
+  std::uint64_t h = static_cast<std::uint64_t>(x) * 0x9E3779B97F4A7C15u ^
+                    static_cast<std::uint64_t>(y) * 0xC2B2AE3D27D4EB4Fu ^
                     (static_cast<std::uint64_t>(seed) + 1) * 0x165667B19E3779F9u;
   h = (h ^ (h >> 30)) * 0xBF58476D1CE4E5B9u;  // SplitMix64's finaliser (Steele et al. 2014)
   h = (h ^ (h >> 27)) * 0x94D049BB133111EBu;
@@ -36,7 +39,8 @@ double value_noise(glm::dvec2 p, glm::ivec2 period, std::uint32_t seed) {
   const glm::dvec2 cell = glm::floor(p);
   const glm::dvec2 f = p - cell, s = f * f * (3.0 - 2.0 * f);
   const auto at = [&](int dx, int dy) {
-    return hash01(wrap(static_cast<std::int64_t>(cell.x) + dx, period.x), wrap(static_cast<std::int64_t>(cell.y) + dy, period.y), seed);
+    return hash01(wrap(static_cast<std::int64_t>(cell.x) + dx, period.x),
+                  wrap(static_cast<std::int64_t>(cell.y) + dy, period.y), seed);
   };
   return glm::mix(glm::mix(at(0, 0), at(1, 0), s.x), glm::mix(at(0, 1), at(1, 1), s.x), s.y);
 }
@@ -51,13 +55,18 @@ double fractal_noise(glm::dvec2 p, glm::ivec2 period, int octaves, std::uint32_t
   return sum / total;
 }
 
-glm::dvec3 paint(std::uint32_t rgb) { return glm::dvec3((rgb >> 16) & 255u, (rgb >> 8) & 255u, rgb & 255u) / 255.0; }
-
-ModelTexture fill(const std::string& name, int width_px, int height_px, const std::function<glm::dvec3(glm::dvec2)>& colour) {
-  return fill_channels(name, width_px, height_px, 3, [&](glm::dvec2 uv) { return glm::dvec4(colour(uv), 1.0); });
+glm::dvec3 paint(std::uint32_t rgb) {
+  return glm::dvec3((rgb >> 16) & 255u, (rgb >> 8) & 255u, rgb & 255u) / 255.0;
 }
 
-ModelTexture fill_rgba(const std::string& name, int width_px, int height_px, const std::function<glm::dvec4(glm::dvec2)>& colour) {
+ModelTexture fill(const std::string& name, int width_px, int height_px,
+                  const std::function<glm::dvec3(glm::dvec2)>& colour) {
+  return fill_channels(name, width_px, height_px, 3,
+                       [&](glm::dvec2 uv) { return glm::dvec4(colour(uv), 1.0); });
+}
+
+ModelTexture fill_rgba(const std::string& name, int width_px, int height_px,
+                       const std::function<glm::dvec4(glm::dvec2)>& colour) {
   return fill_channels(name, width_px, height_px, 4, colour);
 }
 

@@ -22,8 +22,10 @@ double fractal_noise(glm::dvec2 p, glm::ivec2 period, int octaves, std::uint32_t
 glm::dvec3 paint(std::uint32_t rgb);
 
 // Fills a picture: colour (sRGB-encoded, clamped) at the texel centre uv in [0, 1]^2, v downwards.
-ModelTexture fill(const std::string& name, int width_px, int height_px, const std::function<glm::dvec3(glm::dvec2)>& colour);
+ModelTexture fill(const std::string& name, int width_px, int height_px,
+                  const std::function<glm::dvec3(glm::dvec2)>& colour);
 // The same with alpha in the fourth component.
-ModelTexture fill_rgba(const std::string& name, int width_px, int height_px, const std::function<glm::dvec4(glm::dvec2)>& colour);
+ModelTexture fill_rgba(const std::string& name, int width_px, int height_px,
+                       const std::function<glm::dvec4(glm::dvec2)>& colour);
 
 }  // namespace probewalk::procedural

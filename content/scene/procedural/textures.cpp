@@ -19,7 +19,8 @@ double smooth(double from, double to, double value) {
 // Long streaks along u with a few darker pores: 0 = light wood, 1 = dark wood.
 double grain(glm::dvec2 p, glm::ivec2 period, std::uint32_t seed) {
   const double bend = 0.6 * fractal_noise(p, period, 2, seed);
-  const double streaks = fractal_noise({p.x, 12.0 * p.y + 4.0 * bend}, {period.x, 12 * period.y}, 3, seed + 7);
+  const double streaks =
+      fractal_noise({p.x, 12.0 * p.y + 4.0 * bend}, {period.x, 12 * period.y}, 3, seed + 7);
   const double pores = fractal_noise({2.0 * p.x, 48.0 * p.y}, {2 * period.x, 48 * period.y}, 2, seed + 13);
   return glm::clamp(0.75 * streaks + 0.45 * (pores - 0.5), 0.0, 1.0);
 }
@@ -40,7 +41,8 @@ ModelTexture plank_floor_texture(std::uint32_t light, std::uint32_t dark) {
     const double along = uv.x + hash01(plank, 0, 3);  // each row is shifted, and cut into two boards
     const int board = static_cast<int>(std::floor(along * 2.0)) & 1;
     const double tone = hash01(plank, board, 5);
-    const double dark_share = 0.55 * grain({4.0 * uv.x, row}, {4, kPlanks}, 11u + static_cast<std::uint32_t>(board)) + 0.32 * tone;
+    const double dark_share =
+        0.55 * grain({4.0 * uv.x, row}, {4, kPlanks}, 11u + static_cast<std::uint32_t>(board)) + 0.32 * tone;
     const double joint = joint_distance({along * 2.0 - std::floor(along * 2.0), row - plank}, {0.8, 0.16});
     return glm::mix(paint(light), paint(dark), dark_share) * glm::mix(0.55, 1.0, smooth(0.0, 0.005, joint));
   });
@@ -54,21 +56,24 @@ ModelTexture wood_texture(const std::string& name, std::uint32_t light, std::uin
 
 ModelTexture plaster_texture() {
   return fill("plaster", 256, 256, [](glm::dvec2 uv) {
-    const double trowel = fractal_noise(6.0 * uv, {6, 6}, 4, 31), sand = hash01(static_cast<int>(uv.x * 256), static_cast<int>(uv.y * 256), 32);
+    const double trowel = fractal_noise(6.0 * uv, {6, 6}, 4, 31),
+                 sand = hash01(static_cast<int>(uv.x * 256), static_cast<int>(uv.y * 256), 32);
     return glm::dvec3(0.955 + 0.05 * (trowel - 0.5) + 0.012 * (sand - 0.5));
   });
 }
 
 ModelTexture cloth_texture() {
   return fill("cloth", 128, 128, [](glm::dvec2 uv) {
-    const double warp = 0.5 + 0.5 * std::cos(kTurn_rad * 16.0 * uv.x), weft = 0.5 + 0.5 * std::cos(kTurn_rad * 16.0 * uv.y);
+    const double warp = 0.5 + 0.5 * std::cos(kTurn_rad * 16.0 * uv.x),
+                 weft = 0.5 + 0.5 * std::cos(kTurn_rad * 16.0 * uv.y);
     const bool over = (static_cast<int>(16.0 * uv.x) + static_cast<int>(16.0 * uv.y)) % 2 == 0;
     const double slub = fractal_noise(8.0 * uv, {8, 8}, 3, 41);
     return glm::dvec3(0.88 + 0.08 * (over ? 1.0 - warp : 1.0 - weft) + 0.14 * (slub - 0.5));
   });
 }
 
-ModelTexture tile_texture(const std::string& name, std::uint32_t glaze, std::uint32_t grout, int columns, int rows) {
+ModelTexture tile_texture(const std::string& name, std::uint32_t glaze, std::uint32_t grout, int columns,
+                          int rows) {
   return fill(name, 256, 256, [=](glm::dvec2 uv) {
     const glm::dvec2 grid = uv * glm::dvec2(columns, rows), cell = glm::floor(grid);
     const double tone = hash01(static_cast<int>(cell.x), static_cast<int>(cell.y), 51);
@@ -80,12 +85,15 @@ ModelTexture tile_texture(const std::string& name, std::uint32_t glaze, std::uin
 ModelTexture stone_floor_texture() {
   return fill("stone floor", 512, 512, [](glm::dvec2 uv) {
     const glm::dvec2 grid = uv * 2.0, cell = glm::floor(grid);
-    const auto seed = static_cast<std::uint32_t>(60 + 2 * static_cast<int>(cell.x) + static_cast<int>(cell.y));
+    const auto seed =
+        static_cast<std::uint32_t>(60 + 2 * static_cast<int>(cell.x) + static_cast<int>(cell.y));
     const double cloud = fractal_noise(6.0 * uv, {6, 6}, 5, seed);
     const double vein = std::abs(fractal_noise(4.0 * uv, {4, 4}, 5, seed + 9) - 0.5);
     const double joint = joint_distance(grid - cell, {0.5, 0.5});
-    const glm::dvec3 stone = glm::mix(paint(0xC9C0B2), paint(0xA79C8D), cloud) * (1.0 - 0.10 * smooth(0.03, 0.0, vein));
-    return glm::mix(paint(0x8B8378), stone * (0.97 + 0.05 * hash01(seed, 0, 2)), smooth(0.0015, 0.0035, joint));
+    const glm::dvec3 stone =
+        glm::mix(paint(0xC9C0B2), paint(0xA79C8D), cloud) * (1.0 - 0.10 * smooth(0.03, 0.0, vein));
+    return glm::mix(paint(0x8B8378), stone * (0.97 + 0.05 * hash01(seed, 0, 2)),
+                    smooth(0.0015, 0.0035, joint));
   });
 }
 
@@ -120,7 +128,8 @@ ModelTexture brick_texture() {
 
 ModelTexture grass_texture() {
   return fill("grass", 256, 256, [](glm::dvec2 uv) {
-    const double tuft = fractal_noise(10.0 * uv, {10, 10}, 3, 91), blade = value_noise(glm::dvec2(96.0, 64.0) * uv, {96, 64}, 92);
+    const double tuft = fractal_noise(10.0 * uv, {10, 10}, 3, 91),
+                 blade = value_noise(glm::dvec2(96.0, 64.0) * uv, {96, 64}, 92);
     return glm::mix(paint(0x4E6330), paint(0x8DA052), 0.55 * tuft + 0.45 * blade);
   });
 }
@@ -140,7 +149,8 @@ ModelTexture marble_texture() {
   });
 }
 
-ModelTexture knot_rug_texture(const std::string& name, std::uint32_t ground, std::uint32_t figure, std::uint32_t accent) {
+ModelTexture knot_rug_texture(const std::string& name, std::uint32_t ground, std::uint32_t figure,
+                              std::uint32_t accent) {
   return fill(name, 384, 256, [=](glm::dvec2 uv) {
     const glm::dvec2 from_edge = glm::min(uv, 1.0 - uv) * glm::dvec2(3.0, 2.0);
     const double edge = glm::min(from_edge.x, from_edge.y);
@@ -155,7 +165,8 @@ ModelTexture knot_rug_texture(const std::string& name, std::uint32_t ground, std
     const double diamond = cell.x + cell.y;
     if (diamond < 0.10) return paint(accent) * pile;
     if (diamond < 0.24) return paint(figure) * pile;
-    return (diamond > 0.42 && diamond < 0.46 ? glm::mix(paint(ground), paint(figure), 0.5) : paint(ground)) * pile;
+    return (diamond > 0.42 && diamond < 0.46 ? glm::mix(paint(ground), paint(figure), 0.5) : paint(ground)) *
+           pile;
   });
 }
 
@@ -193,7 +204,8 @@ ModelTexture leaf_texture() {
       if (along < 0.0 || along > 1.0) continue;
       const double width = 0.27 * std::sin(std::numbers::pi * std::pow(along, 0.75));
       if (std::abs(across) > width) continue;
-      const double tone = 0.85 + 0.3 * hash01(leaf, 0, 151) - (std::abs(across) < 0.018 ? 0.12 : 0.0) + (across > 0.0 ? 0.08 : 0.0);
+      const double tone = 0.85 + 0.3 * hash01(leaf, 0, 151) - (std::abs(across) < 0.018 ? 0.12 : 0.0) +
+                          (across > 0.0 ? 0.08 : 0.0);
       colour = {0.42 * tone, 0.54 * tone, 0.22 * tone, 1.0};
     }
     return colour;
@@ -204,9 +216,8 @@ ModelTexture book_spines_texture() {
   static constexpr std::array<std::uint32_t, kBookColours> kColours{
       0x7A2E2B, 0x2F4858, 0xC9A66B, 0x33523F, 0xE3D9C6, 0x8C5A3C, 0x1F2D3A, 0xA8553A,
       0x5B6B5A, 0xD8C39A, 0x4A3B52, 0x9A8F80, 0xB58B3A, 0x3B3A38, 0x6E8790, 0xEDE6DA};
-  return fill("book spines", 4 * kBookColours, 4, [](glm::dvec2 uv) {
-    return paint(kColours[static_cast<std::size_t>(uv.x * kBookColours)]);
-  });
+  return fill("book spines", 4 * kBookColours, 4,
+              [](glm::dvec2 uv) { return paint(kColours[static_cast<std::size_t>(uv.x * kBookColours)]); });
 }
 
 }  // namespace probewalk::procedural

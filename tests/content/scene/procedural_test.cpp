@@ -2,7 +2,6 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-
 #include <unistd.h>
 
 #include <algorithm>
@@ -42,7 +41,8 @@ struct Glb {
     const std::size_t text = word_at(bytes, 12);
     EXPECT_EQ(text % 4, 0u);
     EXPECT_EQ(word_at(bytes, 16), 0x4E4F534Au);
-    root = Json::parse(reinterpret_cast<const char*>(bytes.data()) + 20, reinterpret_cast<const char*>(bytes.data()) + 20 + text);
+    root = Json::parse(reinterpret_cast<const char*>(bytes.data()) + 20,
+                       reinterpret_cast<const char*>(bytes.data()) + 20 + text);
     EXPECT_EQ(word_at(bytes, 24 + text), 0x004E4942u);
     EXPECT_EQ(28 + text + word_at(bytes, 20 + text), bytes.size());
     binary = std::span<const std::byte>(bytes).subspan(28 + text);
@@ -55,7 +55,8 @@ struct Glb {
   std::size_t triangles() const {
     std::size_t count = 0;
     for (const Json& mesh : root["meshes"])
-      for (const Json& primitive : mesh["primitives"]) count += root["accessors"][primitive["indices"].get<std::size_t>()]["count"].get<std::size_t>() / 3;
+      for (const Json& primitive : mesh["primitives"])
+        count += root["accessors"][primitive["indices"].get<std::size_t>()]["count"].get<std::size_t>() / 3;
     return count;
   }
   // Room boxes by name: lower x, y, z, upper x, y, z.
@@ -78,14 +79,17 @@ struct Glb {
 const Glb& scene(std::string_view name) {
   static std::map<std::string, Glb, std::less<>> made;
   const auto found = made.find(name);
-  return found != made.end() ? found->second : made.emplace(std::string(name), make_procedural_glb(name)).first->second;
+  return found != made.end() ? found->second
+                             : made.emplace(std::string(name), make_procedural_glb(name)).first->second;
 }
 
 // The scene as a bake sees it.
 Scene loaded_scene(const std::string& name) {
-  const std::filesystem::path file = std::filesystem::path(PROBEWALK_TEST_OUTPUT_DIR) / ("procedural-" + name + "-" + std::to_string(getpid()) + ".glb");
+  const std::filesystem::path file = std::filesystem::path(PROBEWALK_TEST_OUTPUT_DIR) /
+                                     ("procedural-" + name + "-" + std::to_string(getpid()) + ".glb");
   const std::vector<std::byte>& bytes = scene(name).bytes;
-  std::ofstream(file, std::ios::binary).write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  std::ofstream(file, std::ios::binary)
+      .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
   Scene loaded = load_scene(file);
   std::filesystem::remove(file);
   return loaded;
@@ -93,7 +97,9 @@ Scene loaded_scene(const std::string& name) {
 
 class EveryProceduralScene : public testing::TestWithParam<std::string> {};
 
-TEST_P(EveryProceduralScene, IsTheSameBytesTwice) { EXPECT_EQ(scene(GetParam()).bytes, make_procedural_glb(GetParam())); }
+TEST_P(EveryProceduralScene, IsTheSameBytesTwice) {
+  EXPECT_EQ(scene(GetParam()).bytes, make_procedural_glb(GetParam()));
+}
 
 TEST_P(EveryProceduralScene, HasAccessorsInsideTheirBuffersAndTrueBounds) {
   const Glb& glb = scene(GetParam());
@@ -157,7 +163,8 @@ TEST_P(EveryProceduralScene, StartsInsideOneOfItsRooms) {
   const Json& start = glb.root["scenes"][0]["extras"]["probewalk_start"];
   bool inside = false;
   for (const auto& [name, box] : glb.rooms())
-    inside |= start[0] >= box[0] && start[0] <= box[3] && start[1] >= box[1] && start[1] <= box[4] && start[2] >= box[2] && start[2] <= box[5];
+    inside |= start[0] >= box[0] && start[0] <= box[3] && start[1] >= box[1] && start[1] <= box[4] &&
+              start[2] >= box[2] && start[2] <= box[5];
   EXPECT_TRUE(inside);
 }
 
@@ -166,16 +173,18 @@ std::vector<std::string> scene_names() {
   for (const ProceduralSceneInfo& info : procedural_scenes()) names.push_back(info.name);
   return names;
 }
-INSTANTIATE_TEST_SUITE_P(Procedural, EveryProceduralScene, testing::ValuesIn(scene_names()), [](const auto& parameter) {
-  std::string name = parameter.param;
-  std::replace(name.begin(), name.end(), '-', '_');
-  return name;
-});
+INSTANTIATE_TEST_SUITE_P(Procedural, EveryProceduralScene, testing::ValuesIn(scene_names()),
+                         [](const auto& parameter) {
+                           std::string name = parameter.param;
+                           std::replace(name.begin(), name.end(), '-', '_');
+                           return name;
+                         });
 
 TEST(ProceduralHouse, HasItsRoomsOnTwoFloorsAndACourtyard) {
   const auto rooms = scene("house").rooms();
   int ground = 0, upper = 0;
-  for (const auto& [name, box] : rooms) (box[1] > 2.0 ? upper : ground) += name != "Courtyard" && name != "Stairwell";
+  for (const auto& [name, box] : rooms)
+    (box[1] > 2.0 ? upper : ground) += name != "Courtyard" && name != "Stairwell";
   EXPECT_GE(ground, 4);
   EXPECT_GE(upper, 4);
   EXPECT_TRUE(rooms.contains("Courtyard"));
@@ -188,8 +197,10 @@ TEST(ProceduralHouse, CanBeWalkedFromRoomToRoom) {
   const Space space = find_space(house, rays, {}, progress);
   std::map<std::string, double> floor_m2;
   for (const FloorNode& node : space.floor.nodes)
-    if (node.room < space.rooms.size()) floor_m2[space.rooms[node.room].name] += space.floor.cell_m * space.floor.cell_m;
-  for (const auto& [name, box] : scene("house").rooms()) EXPECT_GT(floor_m2[name], 0.4 * (box[3] - box[0]) * (box[5] - box[2])) << name;
+    if (node.room < space.rooms.size())
+      floor_m2[space.rooms[node.room].name] += space.floor.cell_m * space.floor.cell_m;
+  for (const auto& [name, box] : scene("house").rooms())
+    EXPECT_GT(floor_m2[name], 0.4 * (box[3] - box[0]) * (box[5] - box[2])) << name;
   const auto joined = [&](const std::string& a, const std::string& b) {
     return std::any_of(space.portals.begin(), space.portals.end(), [&](const Portal& portal) {
       const std::string &first = space.rooms[portal.room_a].name, &second = space.rooms[portal.room_b].name;
@@ -204,22 +215,25 @@ TEST(ProceduralHouse, CanBeWalkedFromRoomToRoom) {
 }
 
 TEST(ProceduralHouse, NoRayPassesItsShell) {
-  // Rays into corners and along seams: from the middle of each indoor room towards its edges, where walls, floors and
-  // ceilings meet. Nothing there may be missed or hit from behind.
+  // Rays into corners and along seams: from the middle of each indoor room towards its edges, where walls,
+  // floors and ceilings meet. Nothing there may be missed or hit from behind.
   const Scene house = loaded_scene("house");
   const RayScene rays(house);
   for (const auto& [name, box] : scene("house").rooms()) {
     if (name == "Courtyard" || name == "Stairwell") continue;
-    const glm::vec3 lower(box[0], box[1], box[2]), upper(box[3], box[4], box[5]), middle = 0.5f * (lower + upper);
+    const glm::vec3 lower(box[0], box[1], box[2]), upper(box[3], box[4], box[5]),
+        middle = 0.5f * (lower + upper);
     for (int step = 0; step <= 400; ++step) {
       const float t = static_cast<float>(step) / 400.0f;
       for (const float x : {lower.x, upper.x})
         for (const float y : {lower.y, upper.y}) {
-          EXPECT_TRUE(rays.closest(middle, glm::vec3(x, y, glm::mix(lower.z, upper.z, t)) - middle).hit) << name << ' ' << t;
+          EXPECT_TRUE(rays.closest(middle, glm::vec3(x, y, glm::mix(lower.z, upper.z, t)) - middle).hit)
+              << name << ' ' << t;
         }
       for (const float z : {lower.z, upper.z})
         for (const float x : {lower.x, upper.x}) {
-          const SurfaceHit hit = rays.closest(middle, glm::vec3(x, glm::mix(lower.y, upper.y, t), z) - middle);
+          const SurfaceHit hit =
+              rays.closest(middle, glm::vec3(x, glm::mix(lower.y, upper.y, t), z) - middle);
           EXPECT_TRUE(hit.hit) << name << ' ' << t;
         }
     }
@@ -236,12 +250,15 @@ TEST(ProceduralHouse, KeepsItsSize) {
 TEST(ProceduralHouse, HasEveryKindOfLight) {
   const Glb& glb = scene("house");
   std::set<std::string> kinds;
-  for (const Json& light : glb.root["extensions"]["KHR_lights_punctual"]["lights"]) kinds.insert(light["type"]);
+  for (const Json& light : glb.root["extensions"]["KHR_lights_punctual"]["lights"])
+    kinds.insert(light["type"]);
   EXPECT_EQ(kinds, (std::set<std::string>{"directional", "point", "spot"}));
   EXPECT_TRUE(glb.root["scenes"][0]["extras"].contains("probewalk_sky"));
 }
 
-TEST(ProceduralScenes, BoxRoomIsSmall) { EXPECT_LE(scene("box-room").triangles(), 100u); }
+TEST(ProceduralScenes, BoxRoomIsSmall) {
+  EXPECT_LE(scene("box-room").triangles(), 100u);
+}
 
 TEST(ProceduralScenes, AnUnknownNameIsRefusedWithTheKnownOnes) {
   try {
