@@ -21,7 +21,7 @@ Model make_house() {
   sun.kind = ModelLight::Kind::kDirectional;
   sun.direction = glm::normalize(glm::dvec3(0.50, -0.72, -0.62));
   sun.color = {1.0f, 0.93f, 0.80f};
-  sun.intensity = 2000.0;
+  sun.intensity = 1800.0;
   model.lights.push_back(sun);
   model.sky = {{75.0f, 130.0f, 260.0f}, {270.0f, 310.0f, 360.0f}, {110.0f, 112.0f, 95.0f}};
   model.start_m = glm::dvec3(6.9, 0.0, 3.3);

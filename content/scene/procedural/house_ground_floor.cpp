@@ -17,10 +17,10 @@ void furnish_living_room(Model& model, const Palette& p) {
   draw_armchair(piece("Armchair west", {2.25, 0, 6.35}, 80), p, p.armchair_cloth);
   draw_armchair(piece("Armchair south", {2.75, 0, 7.75}, 142), p, p.armchair_cloth);
   draw_sideboard(piece("Sideboard", {0.235, 0, 6.7}, 90), p, p.walnut, 1.9);
-  draw_table_lamp(piece("Sideboard lamp", {0.25, 0.746, 7.35}), p, 230);
+  draw_table_lamp(piece("Sideboard lamp", {0.25, 0.746, 7.35}), p, 345);
   draw_vase(piece("Sideboard vase", {0.25, 0.746, 6.1}), p.ceramic_dark, 0.32);
   draw_book_pile(piece("Sideboard books", {0.25, 0.746, 6.55}, 80), p, 4, 9);
-  draw_floor_lamp(piece("Floor lamp", {2.86, 0, 5.0}), p, 550);
+  draw_floor_lamp(piece("Floor lamp", {2.86, 0, 5.0}), p, 825);
   draw_painting(piece("Painting hills", {4.22, 1.62, 4.6}), p.paintings[0], p.walnut, 1.3, 0.95);
   draw_painting(piece("Painting plant", {6.9, 1.6, 8.2}, -90), p.paintings[2], p.oak, 0.55, 0.75);
   draw_curtain_rod(piece("Curtain rod living", {3.4, 2.52, 8.86}), p, 5.9);
@@ -51,10 +51,10 @@ void furnish_kitchen(Model& model, const Palette& p) {
     draw_chair(piece("Chair", {table_x + x, 0, table_z + 0.64}, 180 + 12 * x), p, p.oak);
     draw_tableware(piece("Tableware", {table_x + x - 0.05, 0.7505, table_z - 0.27}), p);
     draw_tableware(piece("Tableware", {table_x + x + 0.05, 0.7505, table_z + 0.27}, 180), p);
-    draw_pendant(piece("Dining pendant", {table_x + x, kGroundCeiling_m, table_z}), p, 1.02, 425);
+    draw_pendant(piece("Dining pendant", {table_x + x, kGroundCeiling_m, table_z}), p, 1.02, 640);
   }
   draw_chair(piece("Chair", {table_x - 1.16, 0, table_z}, 84), p, p.oak);
-  draw_ceiling_lamp(piece("Kitchen lamp", {10.9, kGroundCeiling_m, 5.75}), p, 320);
+  draw_ceiling_lamp(piece("Kitchen lamp", {10.9, kGroundCeiling_m, 5.75}), p, 480);
   draw_vase(piece("Jug", {11.70, 0.9205, 5.0}), p.ceramic, 0.28);
   draw_vase(piece("Jar", {11.76, 0.9205, 7.75}), p.terracotta, 0.20);
   draw_wall_shelf(piece("Kitchen shelf", {7.10, 1.55, 5.15}, 90), p, 0.85, 12);
@@ -74,13 +74,13 @@ void furnish_hall(Model& model, const Palette& p) {
   door.box(p.brass, {0.37, 1.0, 0.025}, {0.43, 1.03, 0.075});
   draw_rug(piece("Rug hall", {7.2, 0.002, 2.1}), p.rug_hall, p.linen, 2.4, 1.5);
   draw_table(piece("Console", {7.25, 0, 4.19}), p.walnut, p.walnut, 1.0, 0.36, 0.82);
-  draw_table_lamp(piece("Console lamp", {6.95, 0.821, 4.2}), p, 230);
+  draw_table_lamp(piece("Console lamp", {6.95, 0.821, 4.2}), p, 345);
   draw_vase(piece("Console vase", {7.55, 0.821, 4.2}), p.terracotta, 0.3);
   draw_painting(piece("Painting blocks", {7.25, 1.65, 4.4}, 180), p.paintings[1], p.black_metal, 0.66, 0.9);
   draw_bench(piece("Hall bench", {8.45, 0, 0.27}), p, p.oak, 1.2);
   draw_potted_plant(piece("Plant hall", {5.6, 0, 0.45}), p, p.ceramic, 1.6, 9);
-  draw_globe_pendant(piece("Hall pendant", {7.2, kGroundCeiling_m, 2.1}), p, 0.52, 0.13, 150);
-  draw_globe_pendant(piece("Stair pendant", {10.79, kUpperCeiling_m, 1.7}), p, 2.3, 0.16, 195);
+  draw_globe_pendant(piece("Hall pendant", {7.2, kGroundCeiling_m, 2.1}), p, 0.52, 0.13, 225);
+  draw_globe_pendant(piece("Stair pendant", {10.79, kUpperCeiling_m, 1.7}), p, 2.3, 0.16, 290);
   draw_sideboard(piece("Chest", {5.435, 0, 3.55}, 90), p, p.oak, 1.1);
   draw_candle(piece("Chest candle", {5.42, 0.746, 3.3}), p, 0.24);
   draw_vase(piece("Chest bowl", {5.43, 0.746, 3.8}), p.ceramic_dark, 0.2);
@@ -108,8 +108,8 @@ void furnish_library(Model& model, const Palette& p) {
   draw_reading_spot(piece("Desk lamp", {2.95, 0.7405, 0.3}), p, 420);
   draw_book_pile(piece("Desk books", {3.98, 0.7405, 0.36}, -15), p, 5, 16);
   Brush(model, "Papers").at({3.35, 0.7405, 0.48}, 8).box(p.paper, {-0.105, 0, -0.15}, {0.105, 0.006, 0.15});
-  draw_floor_lamp(piece("Library lamp", {0.45, 0, 0.45}), p, 640);
-  draw_globe_pendant(piece("Library pendant", {2.6, kGroundCeiling_m, 2.4}), p, 0.5, 0.13, 130);
+  draw_floor_lamp(piece("Library lamp", {0.45, 0, 0.45}), p, 960);
+  draw_globe_pendant(piece("Library pendant", {2.6, kGroundCeiling_m, 2.4}), p, 0.5, 0.13, 195);
 }
 
 }  // namespace

@@ -16,11 +16,11 @@ void furnish_landing(Model& model, const Palette& p) {
   draw_armchair(piece("Landing chair", {5.85, kY, 0.85}, 40), p, p.armchair_cloth);
   draw_painting(piece("Painting landing", {7.4, kY + 1.6, 4.4}, 180), p.paintings[0], p.walnut, 1.1, 0.8);
   draw_sideboard(piece("Landing chest", {7.4, kY, 4.17}, 180), p, p.oak, 1.2);
-  draw_table_lamp(piece("Landing lamp", {7.85, kY + 0.746, 4.2}), p, 230);
+  draw_table_lamp(piece("Landing lamp", {7.85, kY + 0.746, 4.2}), p, 345);
   draw_vase(piece("Landing vase", {7.0, kY + 0.746, 4.2}), p.ceramic, 0.28);
   draw_potted_plant(piece("Plant landing", {9.05, kY, 0.5}), p, p.terracotta, 1.3, 31);
   draw_bookcase(piece("Landing bookcase", {5.355, kY, 3.78}, 90), p, p.oak, 0.9, 1.5, 33);
-  draw_globe_pendant(piece("Landing pendant", {7.3, kUpperCeiling_m, 2.2}), p, 0.6, 0.13, 150);
+  draw_globe_pendant(piece("Landing pendant", {7.3, kUpperCeiling_m, 2.2}), p, 0.6, 0.13, 225);
 }
 
 void furnish_bedroom(Model& model, const Palette& p) {
@@ -32,7 +32,7 @@ void furnish_bedroom(Model& model, const Palette& p) {
   draw_double_bed(piece("Double bed", {x, kY, 5.685}), p);
   for (const double side : {-1.0, 1.0}) {
     draw_nightstand(piece("Nightstand", {x + 1.16 * side, kY, 4.81}), p);
-    draw_table_lamp(piece("Bedside lamp", {x + 1.16 * side, kY + 0.4605, 4.78}), p, 210);
+    draw_table_lamp(piece("Bedside lamp", {x + 1.16 * side, kY + 0.4605, 4.78}), p, 315);
     draw_painting(piece("Painting over bed", {x + 0.42 * side, kY + 1.65, 4.6}),
                   p.paintings[side < 0 ? 2 : 1], p.oak, 0.5, 0.68);
   }
@@ -43,7 +43,7 @@ void furnish_bedroom(Model& model, const Palette& p) {
   draw_curtain(piece("Curtain bedroom west", {1.35, kY + 2.485, 8.87}), p, 1.5, 2.46, 10);
   draw_curtain(piece("Curtain bedroom east", {4.45, kY + 2.485, 8.87}), p, 0.8, 2.46, 8);
   draw_potted_plant(piece("Plant bedroom", {0.45, kY, 5.2}), p, p.ceramic, 1.4, 42);
-  draw_globe_pendant(piece("Bedroom pendant", {x, kUpperCeiling_m, 7.0}), p, 0.5, 0.15, 130);
+  draw_globe_pendant(piece("Bedroom pendant", {x, kUpperCeiling_m, 7.0}), p, 0.5, 0.15, 195);
 }
 
 void furnish_childrens_room(Model& model, const Palette& p) {
@@ -69,7 +69,7 @@ void furnish_childrens_room(Model& model, const Palette& p) {
   piece("Toy block", {9.08, kY + 0.115, 6.56}, 40)
       .cushion(p.toy_yellow, {-0.05, 0, -0.05}, {0.05, 0.1, 0.05}, 0.006, 1);
   piece("Toy ball", {9.85, kY + 0.135, 6.95}).ball(p.toy_red, {0, 0, 0}, 0.12, 18);
-  draw_globe_pendant(piece("Children's pendant", {9.3, kUpperCeiling_m, 6.7}), p, 0.5, 0.15, 150);
+  draw_globe_pendant(piece("Children's pendant", {9.3, kUpperCeiling_m, 6.7}), p, 0.5, 0.15, 225);
   draw_potted_plant(piece("Plant children", {11.5, kY, 8.5}), p, p.terracotta, 1.0, 54);
 }
 
@@ -84,7 +84,7 @@ void furnish_bathroom(Model& model, const Palette& p) {
   draw_rug(piece("Bath mat", {3.75, kY + 0.002, 1.9}, 90), p.rug_bedroom, p.linen, 1.1, 0.7);
   draw_painting(piece("Bath painting", {3.65, kY + 1.75, 4.4}, 180), p.paintings[2], p.oak, 0.5, 0.65);
   draw_potted_plant(piece("Plant bath", {2.65, kY, 3.5}), p, p.ceramic, 0.9, 61);
-  draw_ceiling_lamp(piece("Bath lamp", {3.65, kUpperCeiling_m, 2.3}), p, 405);
+  draw_ceiling_lamp(piece("Bath lamp", {3.65, kUpperCeiling_m, 2.3}), p, 610);
 }
 
 void furnish_dressing_room(Model& model, const Palette& p) {
@@ -96,7 +96,7 @@ void furnish_dressing_room(Model& model, const Palette& p) {
   draw_stool(piece("Dressing stool", {1.3, kY, 3.3}), p, 0.46);
   draw_rug(piece("Rug dressing", {1.15, kY + 0.002, 2.1}, 90), p.rug_bedroom, p.linen, 1.8, 0.8);
   draw_painting(piece("Dressing painting", {2.1, kY + 1.6, 1.6}, -90), p.paintings[3], p.brass, 0.7, 0.52);
-  draw_ceiling_lamp(piece("Dressing lamp", {1.1, kUpperCeiling_m, 2.1}), p, 320);
+  draw_ceiling_lamp(piece("Dressing lamp", {1.1, kUpperCeiling_m, 2.1}), p, 480);
 }
 
 }  // namespace

@@ -47,7 +47,7 @@ Palette make_palette(Model& model) {
   p.plaster_sand = mix.textured("plaster sand", plaster, 2.0, 0.95f, 0xEADFCC);
   p.plaster_sage = mix.textured("plaster sage", plaster, 2.0, 0.95f, 0xC6CEB6);
   p.plaster_blue = mix.textured("plaster blue", plaster, 2.0, 0.95f, 0xBFCDD4);
-  p.plaster_clay = mix.textured("plaster clay", plaster, 2.0, 0.95f, 0xDDB79B);
+  p.plaster_clay = mix.textured("plaster clay", plaster, 2.0, 0.95f, 0xE6CDB8);
   p.plaster_outside = mix.textured("plaster outside", plaster, 2.0, 0.95f, 0xEDE6D8);
   p.ceiling = mix.textured("ceiling", plaster, 2.0, 0.95f, 0xF8F6F1);
 
