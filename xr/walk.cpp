@@ -177,7 +177,7 @@ bool Walk::frame() {
   if (over) return false;
   record.should_render = drawn != 0;
   book_.add(record, drawn);
-  progress_.advance(1);
+  if (frames_) progress_.advance(1);
   ++frame_;
   return true;
 }
