@@ -1,0 +1,205 @@
+// The walk on real displays: a headset simulated by Monado, a window in a virtual screen, none at all. Each test starts
+// what it needs and is skipped, with the reason, where that is not installed.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "content/image/image.h"
+#include "support/room_pack.h"
+#include "tools/run_probewalk.h"
+
+namespace probewalk::test {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using testing::HasSubstr;
+using testing::Not;
+
+const fs::path& pack() {
+  static const fs::path folder = [] {
+    const fs::path made = fresh_folder("displays") / "room.probes";
+    write_room_pack(made);
+    return made;
+  }();
+  return folder;
+}
+
+bool installed(const std::string& program) { return std::system(("command -v " + program + " >/dev/null 2>&1").c_str()) == 0; }
+
+// Runs lines of bash in `folder`; $probewalk and $pack are the executable and the pack.
+RunResult run_script(const fs::path& folder, const std::string& script) {
+  std::ofstream(folder / "script.sh") << "set -u\ncd '" << folder.string() << "'\nprobewalk='" << PROBEWALK_EXECUTABLE
+                                      << "'\npack='" << pack().string() << "'\nwith_monado='" << PROBEWALK_SOURCE_DIR
+                                      << "/tools/lib/with-monado.sh'\n" << script << "\n";
+  const std::string file = (folder / "script.sh").string();
+  const int status = std::system(("bash '" + file + "' >'" + folder.string() + "/stdout' 2>'" + folder.string() + "/stderr'").c_str());
+  RunResult result;
+  result.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
+  result.out = read_text(folder / "stdout");
+  result.err = read_text(folder / "stderr");
+  return result;
+}
+
+// A screen of its own for what follows in the script.
+const char* const kVirtualScreen =
+    "Xvfb -displayfd 3 -screen 0 640x480x24 -nolisten tcp 3>display >/dev/null 2>&1 &\n"
+    "screen=$!\ntrap 'kill $screen' EXIT\n"
+    "for _ in $(seq 100); do [ -s display ] && break; sleep 0.1; done\n"
+    "export DISPLAY=:$(cat display) XDG_SESSION_TYPE=x11\nunset WAYLAND_DISPLAY\n";
+
+// One pose with the views of both eyes.
+void write_pose(const fs::path& file) {
+  json line = {{"t_s", 0.0}, {"position_m", {-1.0, 1.55, 1.2}}, {"orientation_xyzw", {0.0, -0.2, 0.0, 0.9797958971132712}}};
+  for (const double x : {-1.03, -0.97}) {
+    line["views"].push_back({{"position_m", {x, 1.55, 1.2}},
+                             {"orientation_xyzw", {0.0, -0.2, 0.0, 0.9797958971132712}},
+                             {"fov_rad", {-0.8, 0.7, 0.6, -0.65}}});
+  }
+  std::ofstream(file) << line.dump() << "\n";
+}
+
+const char* const kPose = " --path pose.jsonl --eye-size 96x64 --frames 3 --settle --save-frames pictures --validate";
+
+void expect_same_pictures(const fs::path& a, const fs::path& b) {
+  for (const char* name : {"frame-000002-left.png", "frame-000002-right.png"}) {
+    const ImageRgb8 first = read_png(a / "pictures" / name), second = read_png(b / "pictures" / name);
+    ASSERT_EQ(first.rgb.size(), second.rgb.size());
+    int largest = 0;
+    double sum = 0;
+    for (std::size_t i = 0; i < first.rgb.size(); ++i) {
+      largest = std::max(largest, std::abs(first.rgb[i] - second.rgb[i]));
+      sum += first.rgb[i];
+    }
+    EXPECT_LE(largest, 1) << name;
+    EXPECT_GT(sum / static_cast<double>(first.rgb.size()), 60.0) << name << " is dark";
+  }
+}
+
+const fs::path& offscreen_pictures() {
+  static const fs::path folder = [] {
+    const fs::path made = fresh_folder("displays-offscreen");
+    write_pose(made / "pose.jsonl");
+    const RunResult run = run_script(made, std::string("\"$probewalk\" walk \"$pack\" --display offscreen") + kPose);
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    return made;
+  }();
+  return folder;
+}
+
+TEST(Displays, HeadsetShowsTheSamePictureAsOffscreen) {
+  if (!installed("monado-service")) GTEST_SKIP() << "monado-service is not installed";
+  const fs::path folder = fresh_folder("displays-headset");
+  write_pose(folder / "pose.jsonl");
+  const RunResult run = run_script(folder, std::string("bash \"$with_monado\" null \"$probewalk\" walk \"$pack\" --display headset") + kPose);
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  expect_same_pictures(folder, offscreen_pictures());
+}
+
+TEST(Displays, HeadsetWalkIsFocusedAndTheValidationLayersAreSilent) {
+  if (!installed("monado-service")) GTEST_SKIP() << "monado-service is not installed";
+  const bool has_layer = std::system("ls /usr/share/openxr/1/api_layers/explicit.d/*core_validation* >/dev/null 2>&1") == 0;
+  const fs::path folder = fresh_folder("displays-monado");
+  const std::string layer =
+      has_layer ? "export XR_ENABLE_API_LAYERS=XR_APILAYER_LUNARG_core_validation XR_CORE_VALIDATION_EXPORT_TYPE=text "
+                  "XR_CORE_VALIDATION_FILE_NAME=$PWD/openxr.txt\n"
+                : "";
+  const RunResult run = run_script(
+      folder, layer + "bash \"$with_monado\" null \"$probewalk\" walk \"$pack\" --display auto --eye-size 64x48 "
+                      "--frames 30 --report report --record walked.jsonl --save-frames pictures --save-every 29 --validate");
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.err, HasSubstr("display: headset: Monado"));
+  EXPECT_THAT(run.err, HasSubstr("FOCUSED"));
+  EXPECT_THAT(run.err, HasSubstr("EXITING"));
+  EXPECT_THAT(run.err, Not(HasSubstr("error:")));
+  EXPECT_THAT(run.err, Not(HasSubstr("warning:")));
+  if (has_layer) {
+    EXPECT_THAT(read_text(folder / "openxr.txt"), Not(HasSubstr("VALID_ERROR")));
+    EXPECT_THAT(read_text(folder / "openxr.txt"), Not(HasSubstr("VALID_WARNING")));
+  }
+  const json summary = json::parse(read_text(folder / "report" / "summary.json"));
+  EXPECT_EQ(summary["display"], "headset");
+  EXPECT_EQ(summary["frames"].get<int>() + summary["warmup_frames"].get<int>(), 30);
+  EXPECT_GT(summary["percentiles"]["prediction_horizon"]["n"].get<int>(), 0);
+  const ImageRgb8 left = read_png(folder / "pictures" / "frame-000029-left.png");
+  EXPECT_NE(left.rgb, read_png(folder / "pictures" / "frame-000029-right.png").rgb);
+  EXPECT_GT(*std::max_element(left.rgb.begin(), left.rgb.end()), 100);
+}
+
+TEST(Displays, RuntimeThatDiesEndsTheWalkInOrder) {
+  if (!installed("monado-service")) GTEST_SKIP() << "monado-service is not installed";
+  const fs::path folder = fresh_folder("displays-killed");
+  const RunResult run = run_script(
+      folder,
+      "export XDG_RUNTIME_DIR=$(mktemp -d /tmp/pwxr.XXXXXX) XR_RUNTIME_JSON=/usr/share/openxr/1/openxr_monado.json\n"
+      "XRT_COMPOSITOR_NULL=1 SIMULATED_ENABLE=1 XRT_NO_STDIN=1 monado-service >monado.log 2>&1 </dev/null &\n"
+      "service=$!\n"
+      "for _ in $(seq 100); do grep -q \" 00010000 .* $XDG_RUNTIME_DIR/monado_comp_ipc\\$\" /proc/net/unix && break; sleep 0.1; done\n"
+      "\"$probewalk\" walk \"$pack\" --display headset --eye-size 64x48 --record walked.jsonl --report report &\n"
+      "walk=$!\n"
+      "for _ in $(seq 200); do [ -s walked.jsonl.part ] && break; sleep 0.1; done\n"
+      "kill -KILL $service\n"
+      "wait $walk; code=$?\nrm -rf \"$XDG_RUNTIME_DIR\"\nexit $code");
+  EXPECT_EQ(run.exit_code, 4) << run.err;
+  EXPECT_THAT(run.err, HasSubstr("the headset was lost after"));
+  EXPECT_TRUE(fs::exists(folder / "walked.jsonl"));
+  EXPECT_FALSE(fs::exists(folder / "walked.jsonl.part"));
+  EXPECT_TRUE(fs::exists(folder / "report" / "index.html"));
+}
+
+TEST(Displays, WindowShowsTheSamePictureAsOffscreen) {
+  if (!installed("Xvfb")) GTEST_SKIP() << "Xvfb is not installed";
+  const fs::path folder = fresh_folder("displays-window");
+  write_pose(folder / "pose.jsonl");
+  const RunResult run = run_script(
+      folder, std::string(kVirtualScreen) + "\"$probewalk\" walk \"$pack\" --display window" + kPose);
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  expect_same_pictures(folder, offscreen_pictures());
+}
+
+TEST(Displays, AutoTakesTheWindowWhereNoRuntimeAnswers) {
+  if (!installed("Xvfb")) GTEST_SKIP() << "Xvfb is not installed";
+  const fs::path folder = fresh_folder("displays-auto-window");
+  const RunResult run = run_script(
+      folder, std::string(kVirtualScreen) + "export XR_RUNTIME_JSON=/nonexistent.json\n"
+              "\"$probewalk\" walk \"$pack\" --eye-size 64x48 --mirror right --seconds 1");
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.err, HasSubstr("display: window"));
+  EXPECT_THAT(run.err, HasSubstr("because no OpenXR runtime answers"));
+}
+
+TEST(Displays, AutoGoesOffscreenWhereNothingAnswersAndSaysWhy) {
+  const fs::path folder = fresh_folder("displays-auto-offscreen");
+  const std::string nothing = "unset DISPLAY WAYLAND_DISPLAY; export XR_RUNTIME_JSON=/nonexistent.json\n";
+  const RunResult run = run_script(folder, nothing + "\"$probewalk\" walk \"$pack\" --eye-size 64x48 --frames 2");
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.err, HasSubstr("display: offscreen"));
+  EXPECT_THAT(run.err, HasSubstr("no OpenXR runtime answers"));
+  EXPECT_THAT(run.err, HasSubstr("no display answers"));
+  EXPECT_EQ(run_script(folder, nothing + "\"$probewalk\" walk \"$pack\" --display headset").exit_code, 4);
+  EXPECT_EQ(run_script(folder, nothing + "\"$probewalk\" walk \"$pack\" --display window").exit_code, 4);
+}
+
+TEST(Displays, WrongWalkOptionsAreRefusedInOneLine) {
+  const fs::path folder = fresh_folder("displays-options");
+  const auto refused = [&](const std::string& options) {
+    const RunResult run = run_script(folder, "\"$probewalk\" walk \"$pack\" --display offscreen " + options);
+    EXPECT_THAT(run.err, Not(HasSubstr("terminate"))) << options;
+    return run.exit_code;
+  };
+  EXPECT_EQ(refused("--eye-size 64"), 2);
+  EXPECT_EQ(refused("--eye-size 0x48"), 2);
+  EXPECT_EQ(refused("--eye-size 99999x48"), 2);
+  EXPECT_EQ(refused("--frames 0"), 2);
+  EXPECT_EQ(refused("--settle --realtime"), 2);
+  EXPECT_EQ(refused("--mirror nose"), 2);
+  EXPECT_EQ(refused("--path nowhere.jsonl"), 3);
+  EXPECT_EQ(refused("--record nowhere/p.jsonl --eye-size 32x32 --frames 1"), 3);
+}
+
+}  // namespace
+}  // namespace probewalk::test
