@@ -236,8 +236,9 @@ class BakeJob {
       all_cells_ += std::uint64_t(size.geometry) * size.geometry;
       sees_sky_ |= std::find(probe.geometry.w.begin(), probe.geometry.w.end(), 0.0f) != probe.geometry.w.end();
       entry.bytes_device += device_probe_bytes(size.geometry, size.radiance, cut);
-      done_texels_ += std::uint64_t(size.radiance) * size.radiance;
-      progress_.advance(done_texels_);
+      const std::uint64_t texels = std::uint64_t(size.radiance) * size.radiance;
+      done_texels_ += texels;
+      progress_.advance(texels);
     }
     const std::vector<std::byte> chunk = encode_chunk(level);
     entry.bytes_disk = chunk.size();

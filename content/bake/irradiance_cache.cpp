@@ -76,8 +76,7 @@ struct IrradianceCache::Gather {
     tbb::parallel_for(std::size_t(0), points.size(), [&](std::size_t k) {
       if (progress.cancelled()) return;
       if (!points[k].hidden) work(k);
-      const std::uint64_t now = ++done;
-      if (now % 1024 == 0) progress.advance(now);
+      if (++done % 1024 == 0) progress.advance(1024);
     });
     if (progress.cancelled()) throw Interrupted("interrupted while lighting; give the same command again to start over from there");
   }

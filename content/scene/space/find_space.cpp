@@ -121,7 +121,7 @@ Space find_space(const Scene& scene, const RayScene& rays, const SpaceOptions& o
   std::vector<FloorPart> parts = find_parts(graph);
   score_parts(scene, rays, graph, parts, progress);
   const std::vector<std::size_t> kept = choose_parts(scene, rays, graph, parts, start_m);
-  progress.advance(2);
+  progress.advance(1);
 
   std::vector<std::int32_t> room(graph.places.size(), -1);
   for (const std::size_t id : kept) {
@@ -134,12 +134,12 @@ Space find_space(const Scene& scene, const RayScene& rays, const SpaceOptions& o
   }
   if (scene.rooms.empty()) space.rooms.front().bounds = air_bounds(graph, room, scene.bounds);
   space.portals = find_portals(graph, room);
-  progress.advance(3);
+  progress.advance(1);
 
   const WalkGround ground{graph, parts[kept.front()].places, room};
   space.start = find_start(rays, ground, start_m);
   space.tour = find_tour(ground, space.start, progress);
-  progress.advance(4);
+  progress.advance(1);
   return space;
 }
 
