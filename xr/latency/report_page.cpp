@@ -18,7 +18,8 @@ const std::string kNone = "<span class=\"soft\">–</span>";
 
 std::string value_text(const QuantitySummary& quantity, std::int64_t value) {
   if (quantity.unit == "ns") return in_ms(value);
-  return fmt::format("{:.3g}", static_cast<double>(value) / quantity.scale);
+  const double in_unit = static_cast<double>(value) / quantity.scale;
+  return in_unit != 0.0 && std::abs(in_unit) < 0.001 ? "&lt; 0.001" : fmt::format("{:.3f}", in_unit);
 }
 
 std::string heading(const QuantitySummary& quantity) {

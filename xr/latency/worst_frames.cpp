@@ -54,14 +54,15 @@ std::size_t largest(const StageTimes& excess, std::size_t from, std::size_t to) 
                                   excess.begin());
 }
 
-// The stage to blame: the tile that grew most; then what grew inside it, and the device where the CPU only waited,
-// when that explains at least half.
+// The stage to blame: the tile that grew most; then what grew inside it, or the device where the CPU may only have waited
+// for it (runtimes wait inside any of their calls), when that explains at least half.
 std::size_t blame(const StageTimes& excess) {
   const std::size_t tile = largest(excess, kBegin, kStreaming);
   const std::size_t inner = largest(excess, kStreaming, kBlocked);
   if (2 * excess[inner] >= excess[tile]) return inner;
   const bool blocked = 2 * excess[kBlocked] >= excess[tile];
-  if (blocked || tile == kWait || tile == kBetweenCalls) {
+  const bool cpu_works = tile == kRecord || tile == kLocateEarly || tile == kLocateLate;
+  if (blocked || !cpu_works) {
     const std::size_t device = largest(excess, kGpuTrace, kStageCount);
     if (2 * excess[device] >= excess[tile]) return device;
   }

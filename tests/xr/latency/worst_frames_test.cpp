@@ -61,6 +61,20 @@ TEST(WorstFrames, BlameTheDeviceWhenTheCpuOnlyWaitedForIt) {
                   f[kStalled].gpu.end += kStall;
                 }),
                 "gpu_other");
+  expect_blamed(worst_with([](auto& f) {
+                  f[kStalled].end.end += kStall;  // a runtime that waits for the device when the frame ends
+                  f[kStalled].gpu_trace.end += kStall;
+                  f[kStalled].gpu.end += kStall;
+                }),
+                "gpu_trace");
+}
+
+TEST(WorstFrames, BlameTheCpuWhenItWorkedBesideASlowDevice) {
+  expect_blamed(worst_with([](auto& f) {
+                  f[kStalled].record.end += kStall;
+                  f[kStalled].gpu.end += kStall;
+                }),
+                "record");
 }
 
 TEST(WorstFrames, BlameStreamingInsideTheCallThatItSlowed) {
