@@ -66,8 +66,10 @@ class FrameSource {
   // Ends the frame with the views that were rendered (empty = nothing was).
   virtual void end(const FrameTiming& timing, const std::vector<ViewPose>& rendered_views) = 0;
 
-  // How dark locomotion wants the picture: 0 = as it is, 1 = black (a teleport's blink, a head inside a wall).
+  // How dark locomotion wants the picture: 0 = as it is, 1 = black (a teleport's blink).
   virtual float fade() const { return 0.0f; }
+  // Whether a person's head moves the view, which no wall holds back.
+  virtual bool head_is_real() const { return false; }
   // Of frames whose time has come since the last call. Always empty where a display has no later answer.
   virtual std::vector<PoseError> take_pose_errors() { return {}; }
   // Whether the user asked for a picture of the next frame.

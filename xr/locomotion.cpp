@@ -29,8 +29,6 @@ std::optional<double> floor_height_m(const FloorMap& floor, glm::dvec3 foot_m) {
   return height_m;
 }
 
-bool head_is_free(const FloorMap& floor, glm::dvec3 head_m) { return air_at(floor, head_m) != nullptr; }
-
 std::optional<glm::dvec3> floor_under_ray(const FloorMap& floor, glm::dvec3 origin_m, glm::dvec3 direction,
                                           double reach_m) {
   const double length = glm::length(direction);

@@ -17,9 +17,6 @@ inline constexpr double kRunSpeed_m_s = 3.5;
 // The floor under a foot: the node of the column whose floor lies within one step, or nothing (wall, furniture, void).
 std::optional<double> floor_height_m(const FloorMap& floor, glm::dvec3 foot_m);
 
-// Whether a head can be here: some floor lies below it in its column, with air up to the head.
-bool head_is_free(const FloorMap& floor, glm::dvec3 head_m);
-
 // Where a ray first meets the floor, up to `reach_m` away. It ends at the first column without free air at its height,
 // so that nobody teleports through a wall.
 std::optional<glm::dvec3> floor_under_ray(const FloorMap& floor, glm::dvec3 origin_m, glm::dvec3 direction,

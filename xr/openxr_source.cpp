@@ -301,7 +301,6 @@ void OpenXrSource::move(double dt_s, XrTime time) {
   if (const auto target_m = blink_.advance(dt_s)) {
     rig_ = rig_.teleported(*target_m - glm::dvec3(0, space_floor_m_, 0), head.position_m);
   }
-  wall_fade_.advance(floor_.nodes.empty() || head_is_free(floor_, rig_.world_from_rig(head.position_m)), dt_s);
 }
 
 FrameTarget OpenXrSource::acquire() {
@@ -371,8 +370,6 @@ void OpenXrSource::end(const FrameTiming& timing, const std::vector<ViewPose>& r
     shown_.push_back({display_time_, timing.predicted_display_ns, head.position_m, head.orientation});
   }
 }
-
-float OpenXrSource::fade() const { return std::max(blink_.darkness(), wall_fade_.darkness()); }
 
 std::vector<PoseError> OpenXrSource::take_pose_errors() {
   std::vector<PoseError> errors;

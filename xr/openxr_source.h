@@ -19,8 +19,8 @@ struct HeadsetOptions {
   bool seated = false;        // the head's resting place is at standing eye height, wherever the floor is
 };
 
-// Nothing but the wearer moves the view; teleports blink; a head that leaves the free air goes dark. When runtime,
-// session or service goes away no call throws: poll says kLost.
+// Nothing but the wearer moves the view; teleports blink. When runtime, session or service goes away no call throws:
+// poll says kLost.
 class OpenXrSource final : public FrameSource {
  public:
   // `device` was made with the instance's hooks; it, `instance` and `floor` outlive the source.
@@ -40,7 +40,8 @@ class OpenXrSource final : public FrameSource {
   // The layer states the poses of the last locate; of `rendered_views` it takes the fields of view, which differ from
   // the located ones only where a path is replayed.
   void end(const FrameTiming& timing, const std::vector<ViewPose>& rendered_views) override;
-  float fade() const override;
+  float fade() const override { return blink_.darkness(); }
+  bool head_is_real() const override { return true; }
   std::vector<PoseError> take_pose_errors() override;
   void finish() override;
 
@@ -97,7 +98,6 @@ class OpenXrSource final : public FrameSource {
   Rig rig_;
   bool rig_placed_ = false;
   Blink blink_;
-  WallFade wall_fade_;
 };
 
 }  // namespace probewalk

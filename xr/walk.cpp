@@ -16,6 +16,7 @@
 #include "xr/frame_book.h"
 #include "xr/latency/clock.h"
 #include "xr/latency/run_files.h"
+#include "xr/locomotion.h"
 #include "xr/offscreen_source.h"
 #include "xr/path.h"
 #include "xr/picture_saver.h"
@@ -121,6 +122,7 @@ class Walk {
   WalkRooms rooms_;
   FrameRenderer renderer_;
   FrameSettings settings_;
+  WallFade wall_fade_;
   Ledger ledger_;
   FrameBook book_;
   std::unique_ptr<PathWriter> recorder_;
@@ -190,6 +192,9 @@ std::vector<ViewPose> Walk::draw(const FrameTiming& timing, FrameRecord& record,
   if (views.empty()) return {};
 
   rooms_.update(head, timing.predicted_display_ns, record);
+  if (source_.head_is_real()) {
+    wall_fade_.advance(rooms_.is_free(head.position_m), static_cast<double>(timing.period_ns) * 1e-9);
+  }
   if (settle_) {
     const Interval settled = timed([&] { rooms_.settle(); });
     record.streaming_ns += settled.end - settled.begin;
@@ -232,7 +237,8 @@ void Walk::write(const std::vector<ViewPose>& views) {
         static_cast<int>(source_.view_extent().width)));
   }
   // A replay is shown as it was recorded: nobody's head is in a wall.
-  settings_.fade = view_.is_replay() ? rooms_.darkness() : std::max(rooms_.darkness(), source_.fade());
+  const float moved = view_.is_replay() ? 0.0f : std::max(source_.fade(), wall_fade_.darkness());
+  settings_.fade = std::max(rooms_.darkness(), moved);
   renderer_.write(constants, settings_);
 }
 

@@ -41,12 +41,18 @@ WalkRooms::WalkRooms(const Pack& pack, const Device& device, const WalkRoomsOpti
       source_(pack.path()),
       store_(device, pack.manifest().grid, static_cast<std::uint32_t>(pack.manifest().probe_positions_m.size()),
              ProbeStoreOptions{.frame_slots = kFrameSlots}),
+      free_air_(pack.manifest().grid, pack.manifest().probe_positions_m.size()),
       streamer_(
-          pack.manifest(), source_,
-          [this](LoadedLevel&& loaded) {
-            store_.upload({loaded.room, loaded.level, loaded.first_probe, std::move(loaded.probes)});
-          },
+          pack.manifest(), source_, [this](LoadedLevel&& loaded) { deliver(std::move(loaded)); },
           [this](LevelKey key) { store_.evict(key.room, key.level); }, streamer_options(options)) {}
+
+// On a loader thread.
+void WalkRooms::deliver(LoadedLevel&& loaded) {
+  for (std::uint32_t i = 0; loaded.level == 0 && i < loaded.probes.size(); ++i) {
+    free_air_.add(loaded.first_probe + i, loaded.probes[i]);
+  }
+  store_.upload({loaded.room, loaded.level, loaded.first_probe, std::move(loaded.probes)});
+}
 
 void WalkRooms::update(const ViewPose& head, std::int64_t display_ns, FrameRecord& record) {
   const std::int64_t begin_ns = now_ns();

@@ -11,6 +11,7 @@
 #include "content/progress.h"
 #include "content/stream/room_streamer.h"
 #include "render/probe_store.h"
+#include "xr/free_air.h"
 #include "xr/frame_source.h"
 #include "xr/latency/frame_record.h"
 #include "xr/latency/run_info.h"
@@ -41,9 +42,12 @@ class WalkRooms {
 
   // 1 = black: the walker's room has nothing to show. As of the frame recorded last; comes back gradually.
   float darkness() const { return static_cast<float>(darkness_); }
+  // False inside walls and whatever else is solid.
+  bool is_free(const glm::dvec3& point_m) const { return free_air_.is_free(point_m); }
   StreamingFacts facts() const;
 
  private:
+  void deliver(LoadedLevel&& loaded);
   void report_errors();
 
   const Pack& pack_;
@@ -51,6 +55,7 @@ class WalkRooms {
   WalkRoomsOptions options_;
   FolderSource source_;
   ProbeStore store_;
+  FreeAir free_air_;
   RoomStreamer streamer_;  // its threads hand rooms to the store: they end first
   Walker walker_;
   std::optional<std::int64_t> last_display_ns_;

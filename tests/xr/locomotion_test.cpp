@@ -130,15 +130,6 @@ TEST(FloorUnderRay, FindsTheFloorInViewAndNothingBehindWalls) {
   EXPECT_NEAR(through_door->z, 3.0, 0.03);
 }
 
-TEST(HeadIsFree, InTheRoomsAirOnly) {
-  const FloorMap floor = make_floor({4, 4}, two_rooms);
-  EXPECT_TRUE(head_is_free(floor, {1, 1.6, 1}));
-  EXPECT_FALSE(head_is_free(floor, {1, 1.6, 2.07}));  // in the wall
-  EXPECT_FALSE(head_is_free(floor, {1, 2.6, 1}));     // above the ceiling
-  EXPECT_FALSE(head_is_free(floor, {1, -0.2, 1}));    // below the floor
-  EXPECT_FALSE(head_is_free(floor, {-1, 1.6, 1}));    // outside
-}
-
 TEST(WallFade, DarkensAndComesBackGradually) {
   WallFade fade;
   fade.advance(false, WallFade::kFade_s / 2);
