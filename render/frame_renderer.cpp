@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cstring>
 #include <deque>
 #include <stdexcept>
@@ -170,6 +171,7 @@ struct FrameRenderer::Impl {
   std::uint64_t work = 0;  // timeline value of the last submit
   std::uint64_t next_frame = 1;
   std::uint64_t bytes_copied = 0;
+  std::chrono::nanoseconds blocked{0};  // of the last record
   FrameTarget target;
   bool is_recorded = false, is_written = false;
   std::deque<FrameGpuTimes> times;
@@ -188,7 +190,9 @@ void FrameRenderer::record(const FrameTarget& target) {
     throw std::logic_error("a frame's target differs from what the renderer was made for");
   }
   FrameSlot& slot = impl.slot();
+  const auto before = std::chrono::steady_clock::now();
   impl.wait_for(slot.last_work);
+  impl.blocked = std::chrono::steady_clock::now() - before;
   impl.collect_times();
   impl.clock.tick();
   slot.timer.reset();
@@ -255,6 +259,8 @@ std::uint64_t FrameRenderer::submit() {
   impl.is_recorded = impl.is_written = false;
   return impl.next_frame++;
 }
+
+std::int64_t FrameRenderer::blocked_ns() const { return impl_->blocked.count(); }
 
 std::uint64_t FrameRenderer::bytes_copied() const { return impl_->bytes_copied; }
 

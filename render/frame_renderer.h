@@ -58,6 +58,8 @@ class FrameRenderer {
   // Returns the frame's number, from 1.
   std::uint64_t submit();
 
+  // How long the last record waited for the device.
+  std::int64_t blocked_ns() const;
   // Bytes that the recorded frame copies to the device.
   std::uint64_t bytes_copied() const;
   // Times of the oldest finished frame that has not been taken yet, if any. Does not block. Times not taken before

@@ -380,9 +380,10 @@ std::vector<PoseError> OpenXrSource::take_pose_errors() {
     shown_.pop_front();
     if (now - pose.predicted_display_ns > kPoseHistory_ns || !locate_views(pose.time, views)) continue;
     const Head head = head_of(views);
-    const double cosine = std::min(1.0, std::abs(glm::dot(head.orientation, pose.orientation)));
+    const glm::dquat turn = glm::conjugate(pose.orientation) * head.orientation;
+    const double angle_rad = 2.0 * std::atan2(glm::length(glm::dvec3(turn.x, turn.y, turn.z)), std::abs(turn.w));
     errors.push_back({pose.predicted_display_ns, glm::distance(head.position_m, pose.position_m) * 1e3,
-                      glm::degrees(2.0 * std::acos(cosine))});
+                      glm::degrees(angle_rad)});
   }
   return errors;
 }

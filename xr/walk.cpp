@@ -203,7 +203,9 @@ std::vector<ViewPose> Walk::draw(const FrameTiming& timing, FrameRecord& record,
   record.record = timed([&] {
     const Interval acquired = timed([&] { target = source_.acquire(); });
     record.blocked_ns += acquired.end - acquired.begin;
-    if (target.image != VK_NULL_HANDLE) renderer_.record(target);
+    if (target.image == VK_NULL_HANDLE) return;
+    renderer_.record(target);
+    record.blocked_ns += renderer_.blocked_ns();
   });
   if (target.image == VK_NULL_HANDLE) return {};
   // Where rooms reach the device through the queue, a byte budget spreads them over frames: those before the last are
