@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
@@ -22,7 +24,7 @@ using testing::HasSubstr;
 
 const fs::path& pack() {
   static const fs::path folder = [] {
-    const fs::path made = fs::path(PROBEWALK_TEST_OUTPUT_DIR) / "xr-room.probes";
+    const fs::path made = fs::path(PROBEWALK_TEST_OUTPUT_DIR) / ("xr-room-" + std::to_string(getpid()) + ".probes");  // tests run side by side
     fs::remove_all(made);
     test::write_room_pack(made);
     return made;
