@@ -15,7 +15,7 @@ namespace probewalk {
 
 class CachePoints {
  public:
-  static constexpr int kSectors = 12;
+  static constexpr int kSectors = 32;  // fine enough to see along a strip as narrow as a door frame
   struct Point {
     glm::vec3 position_m{0.0f};
     glm::vec3 normal{0.0f};  // unit; shading normal of its side

@@ -17,6 +17,7 @@ constexpr float kPatchCell_m = 1.0f;    // a longer emissive object (a chain of 
 constexpr std::size_t kMaxPatches = 64;  // the strongest; the others are gathered
 constexpr float kBlocked_m = 0.02f;      // a side that meets something this soon sends its light nowhere
 constexpr int kOpennessRays = 16;
+constexpr int kLeastOpenRays = 8;        // fewer: the inside of a bulb or shade, whose light hardly leaves it
 constexpr int kLampRays = 64;
 constexpr float kLamp_m = 0.3f;
 
@@ -48,12 +49,13 @@ bool side_is_open(const RayScene& rays, glm::vec3 position, glm::vec3 normal, co
   glm::vec3 tangent, bitangent;
   tangent_frame(normal, tangent, bitangent);
   const glm::vec3 origin = position + normal * ray_offset_m(position);
+  int open = 0;
   for (int k = 0; k < kOpennessRays; ++k) {
     const glm::vec3 local = cosine_direction(hammersley(k, kOpennessRays));
     const SurfaceHit hit = rays.closest(origin, tangent * local.x + bitangent * local.y + normal * local.z);
-    if (!hit.hit || (hit.t > kBlocked_m && !own[hit.triangle])) return true;
+    open += !hit.hit || (hit.t > kBlocked_m && !own[hit.triangle]);
   }
-  return false;
+  return open >= kLeastOpenRays;
 }
 
 EmissivePatch make_patch(const Scene& scene, const RayScene& rays, const std::vector<EmissiveTriangle>& triangles) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "content/bake/patterns.h"
 
@@ -13,11 +14,11 @@ namespace {
 constexpr std::size_t kViews = 32;
 constexpr int kWidth_px = 48, kHeight_px = 36;
 constexpr float kTanHalfHeight = 0.6f;  // about 62 degrees high
-// The log-average luminance is shown as this share of white: interiors read as lit, not as grey as the 0.18 of a card.
+// The log-average luminance of a view is shown as this share of white: interiors read as lit, not as the grey of a card.
 constexpr double kKey = 0.20;
-// The 90th percentile should stay below this share of white, for at most this many stops of darkening.
-constexpr double kHighlight = 0.85;
-constexpr double kHighlightStops = 1.0;
+// A tour sees dim rooms and bright courtyards; the picture is exposed for this share of the way from the dimmest view
+// to the brightest, in order. Eyes forgive a bright outside more than a black room.
+constexpr double kViewShare = 0.3;
 constexpr double kWhite = 1.2;  // exposure_from_ev: white = 1.2 * 2^ev cd/m^2
 constexpr float kStoredPeak = 16384.0f;
 
@@ -49,22 +50,34 @@ View look(const LightField& light, const Pose& pose) {
   return view;
 }
 
-double choose_ev(const std::vector<float>& sorted) {
+// Log2 of the view's mean luminance; nothing where nearly all is black.
+std::optional<double> log_average(View& view) {
+  std::sort(view.luminances.begin(), view.luminances.end());
   // The darkest and the brightest twentieth (black corners, lamps, sky) do not tell how a room is lit.
-  const std::size_t first = sorted.size() / 20, last = sorted.size() - first;
+  const std::size_t first = view.luminances.size() / 20, last = view.luminances.size() - first;
   double logs = 0.0;
   std::size_t lit = 0;
   for (std::size_t k = first; k < last; ++k) {
-    if (!(sorted[k] > 0.0f)) continue;
-    logs += std::log2(static_cast<double>(sorted[k]));
+    if (!(view.luminances[k] > 0.0f)) continue;
+    logs += std::log2(static_cast<double>(view.luminances[k]));
     ++lit;
   }
-  if (lit == 0) return 0.0;
-  const double by_key = logs / static_cast<double>(lit) - std::log2(kWhite * kKey);
-  const double bright = percentile(sorted, 0.9);
-  const double by_highlight = std::log2(bright / (kWhite * kHighlight));
-  const double ev = std::max(by_key, std::min(by_highlight, by_key + kHighlightStops));
-  return std::round(std::clamp(ev, -20.0, 30.0) * 100.0) / 100.0;
+  if (lit < view.luminances.size() / 4) return {};
+  return logs / static_cast<double>(lit);
+}
+
+double choose_ev(std::vector<View>& views) {
+  std::vector<double> logs;
+  for (View& view : views) {
+    if (const std::optional<double> average = log_average(view)) logs.push_back(*average);
+  }
+  if (logs.empty()) return 0.0;
+  std::sort(logs.begin(), logs.end());
+  const double at = kViewShare * static_cast<double>(logs.size() - 1);
+  const auto below = static_cast<std::size_t>(at);
+  const double part = at - static_cast<double>(below);
+  const double chosen = logs[below] * (1.0 - part) + logs[std::min(below + 1, logs.size() - 1)] * part;
+  return std::round(std::clamp(chosen - std::log2(kWhite * kKey), -20.0, 30.0) * 100.0) / 100.0;
 }
 
 }  // namespace
@@ -73,19 +86,15 @@ Exposure choose_exposure(const LightField& light, const std::vector<Pose>& tour)
   const std::size_t count = std::min(kViews, tour.size());
   std::vector<View> views(count);
   tbb::parallel_for(std::size_t(0), count, [&](std::size_t k) { views[k] = look(light, tour[k * tour.size() / count]); });
-  std::vector<float> luminances, peaks;
-  for (const View& view : views) {
-    luminances.insert(luminances.end(), view.luminances.begin(), view.luminances.end());
-    peaks.insert(peaks.end(), view.peaks.begin(), view.peaks.end());
-  }
-  std::sort(luminances.begin(), luminances.end());
+  std::vector<float> peaks;
+  for (const View& view : views) peaks.insert(peaks.end(), view.peaks.begin(), view.peaks.end());
   std::sort(peaks.begin(), peaks.end());
   Exposure exposure;
   const float peak = percentile(peaks, 0.9999);
   if (peak > 0.0f && std::isfinite(peak)) {
     exposure.radiance_scale = std::exp2(std::clamp(std::floor(std::log2(kStoredPeak / peak)), -30.0f, 30.0f));
   }
-  exposure.exposure_ev = choose_ev(luminances);
+  exposure.exposure_ev = choose_ev(views);
   return exposure;
 }
 

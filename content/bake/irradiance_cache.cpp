@@ -70,6 +70,16 @@ struct IrradianceCache::Gather {
     return fill_hidden(values);
   }
 
+  // Each point the mean of its open neighbourhood: what few rays found (a patch of sun) must not show as a blotch.
+  Values smooth(const Values& values) const {
+    Values smoothed = values;
+    tbb::parallel_for(std::size_t(0), points.size(), [&](std::size_t k) {
+      const CachePoints::Point& p = points[k];
+      smoothed[k] = points.interpolate(values, p.position_m, p.normal);
+    });
+    return smoothed;
+  }
+
  private:
   template <typename Work>
   void for_each_point(Work&& work) {
@@ -132,7 +142,10 @@ IrradianceCache::IrradianceCache(const Scene& scene, const RayScene& rays, const
   Values emitted;
   Values last = gather.gather(direct_values, rays_of_bounce(options.samples, 1), 1, &emitted, rays_cast_);
   indirect_ = emitted;
-  if (bounces == 0) return;
+  if (bounces == 0) {
+    indirect_ = gather.smooth(indirect_);
+    return;
+  }
   add(indirect_, last);
   add(last, emitted);
   glm::dvec3 before = total(last), now = before;
@@ -149,6 +162,7 @@ IrradianceCache::IrradianceCache(const Scene& scene, const RayScene& rays, const
     tail[c] = 1.0f / (1.0f - ratio);
   }
   for (std::size_t k = 0; k < indirect_.size(); ++k) indirect_[k] += last[k] * tail;
+  indirect_ = gather.smooth(indirect_);
 }
 
 }  // namespace probewalk
