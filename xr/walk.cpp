@@ -163,7 +163,9 @@ bool Walk::frame() {
   FrameTiming timing;
   record.wait = timed([&] { timing = source_.wait(); });
   if (timing.predicted_display_ns == 0) return true;  // lost while waiting: the next poll says so
-  take_late_answers();
+  // Asked for time stamps, some drivers (lavapipe) wait for the frames in flight.
+  const Interval answers = timed([&] { take_late_answers(); });
+  record.blocked_ns += answers.end - answers.begin;
   record.begin = timed([&] { source_.begin(timing); });
   record.predicted_display = timing.predicted_display_ns;
   record.period = timing.period_ns;
