@@ -27,12 +27,11 @@ constexpr std::array<glm::dvec2, 4> kSubSamples{{{-0.375, -0.125}, {0.125, -0.37
 struct Centre {
   glm::vec3 radiance{0.0f};
   glm::vec3 irradiance{0.0f};
-  float w = 0.0f;             // 0 = sky
-  glm::vec3 normal{0.0f};     // of the plane, unit, unoriented
-  float plane_distance = 0.0f;  // normal . (point - probe)
-  glm::vec3 direction{0.0f};
-  float t = 0.0f;
-  std::uint32_t triangle = 0;
+  float w = 0.0f;  // 0 = sky
+  glm::vec3 direction{0.0f};  // unit
+  SurfaceHit hit;
+  float plane_distance = 0.0f;  // geometric normal . (point - probe)
+  float footprint_m = 0.0f;
 };
 
 class RadianceBaker {
@@ -41,9 +40,13 @@ class RadianceBaker {
       : rays_(rays), light_(light), origin_m_(position_m), r_(r), centres_(std::size_t(r) * r) {}
 
   ProbeRadiance bake(float radiance_scale, std::uint64_t* rays_cast) {
+    // Every other texel of every other row is lit by shadow rays; the rest too, but where the lit ones around agree.
     for_each_row([&](int j, std::uint64_t& cast) {
-      for (int i = 0; i < r_; ++i) centres_[texel(i, j)] = see_centre(i, j);
+      for (int i = 0; i < r_; ++i) see_centre(i, j, i % 2 == 0 && j % 2 == 0);
       cast += r_;
+    });
+    for_each_row([&](int j, std::uint64_t&) {
+      for (int i = j % 2 == 0 ? 1 : 0; i < r_; i += j % 2 == 0 ? 2 : 1) light_between(i, j);
     });
     std::vector<glm::vec3> level(centres_.size());
     for_each_row([&](int j, std::uint64_t& cast) {
@@ -76,31 +79,64 @@ class RadianceBaker {
     });
   }
 
-  Centre see_centre(int i, int j) const {
+  void see_centre(int i, int j, bool lit) {
     const glm::dvec3 q = point(i, j);
     const double length = glm::length(q);
-    const glm::vec3 direction(q / length);
-    Centre centre;
-    SurfaceHit hit;
-    centre.radiance = light_.along(glm::vec3(origin_m_), direction, spread_rad(length), &hit, &centre.irradiance);
-    centre.direction = direction;
-    centre.t = hit.t;
-    if (!hit.hit) return centre;
-    centre.w = static_cast<float>(length / std::max(double(hit.t), kMinDistance_m));
-    centre.normal = hit.geometric_normal;
-    centre.plane_distance = glm::dot(hit.geometric_normal, direction) * hit.t;
-    centre.triangle = hit.triangle;
-    return centre;
+    Centre& centre = centres_[texel(i, j)];
+    centre.direction = glm::vec3(q / length);
+    centre.hit = rays_.closest(glm::vec3(origin_m_), centre.direction);
+    if (!centre.hit.hit) {
+      centre.radiance = rays_.scene().sky.radiance(centre.direction);
+      return;
+    }
+    centre.footprint_m = spread_rad(length) * centre.hit.t;
+    centre.w = static_cast<float>(length / std::max(double(centre.hit.t), kMinDistance_m));
+    centre.plane_distance = glm::dot(centre.hit.geometric_normal, centre.direction) * centre.hit.t;
+    if (lit) light_centre(centre);
+  }
+
+  void light_centre(Centre& centre) const {
+    centre.radiance = light_.outgoing(centre.hit, glm::vec3(origin_m_), centre.direction, centre.footprint_m, &centre.irradiance);
+  }
+
+  // Between texels of the same surface that are lit alike the light is theirs; anywhere else it is looked for.
+  void light_between(int i, int j) {
+    Centre& centre = centres_[texel(i, j)];
+    if (centre.w == 0.0f) return;
+    const int du = i % 2, dv = j % 2;
+    glm::vec3 sum(0.0f), low(1e30f), high(0.0f);
+    int count = 0;
+    bool alike = i + du < r_ && j + dv < r_;
+    for (int y = j - dv; alike && y <= j + dv; y += std::max(2 * dv, 1)) {
+      for (int x = i - du; alike && x <= i + du; x += std::max(2 * du, 1)) {
+        const Centre& other = centres_[texel(x, y)];
+        alike = other.w > 0.0f && continues(centre, other);
+        sum += other.irradiance;
+        low = glm::min(low, other.irradiance);
+        high = glm::max(high, other.irradiance);
+        ++count;
+      }
+    }
+    if (!alike || differs(low, high)) return light_centre(centre);
+    centre.irradiance = sum / static_cast<float>(count);
+    centre.radiance = light_.outgoing_lit(centre.hit, centre.direction, centre.footprint_m, centre.irradiance);
+  }
+
+  static bool differs(glm::vec3 low, glm::vec3 high) {
+    return glm::any(glm::greaterThan(high - low, kEven * high + kEvenFloor_lux));
+  }
+  static bool continues(const Centre& centre, const Centre& other) {
+    return continues(centre, other.direction, other.hit.t, other.hit.geometric_normal, other.hit.triangle);
   }
 
   // Whether a hit along a unit direction continues the surface that the centre sees.
   static bool continues(const Centre& centre, glm::vec3 direction, float t, glm::vec3 normal, std::uint32_t triangle) {
-    if (triangle == centre.triangle) return true;
-    const float on_plane = glm::dot(centre.normal, direction) * t;
+    if (triangle == centre.hit.triangle) return true;
+    const float on_plane = glm::dot(centre.hit.geometric_normal, direction) * t;
     const float error = std::abs(on_plane - centre.plane_distance);
     const float scale = std::max(std::abs(centre.plane_distance), 0.05f * t);
-    if (error < kSamePlane * scale) return std::abs(glm::dot(centre.normal, normal)) > kSameFacing;
-    return error < kCurved * scale && std::abs(glm::dot(centre.normal, normal)) > kSameFacing;
+    if (error < kSamePlane * scale) return std::abs(glm::dot(centre.hit.geometric_normal, normal)) > kSameFacing;
+    return error < kCurved * scale && std::abs(glm::dot(centre.hit.geometric_normal, normal)) > kSameFacing;
   }
 
   bool is_even(int i, int j) const {
@@ -109,10 +145,8 @@ class RadianceBaker {
       if (x < 0 || y < 0 || x >= r_ || y >= r_) continue;
       const Centre& other = centres_[texel(x, y)];
       if (other.w == 0.0f || own.w == 0.0f) continue;
-      if (!continues(own, other.direction, other.t, other.normal, other.triangle)) continue;
-      const glm::vec3 difference = glm::abs(other.irradiance - own.irradiance);
-      const glm::vec3 tolerance = kEven * glm::max(own.irradiance, other.irradiance) + kEvenFloor_lux;
-      if (glm::any(glm::greaterThan(difference, tolerance))) return false;
+      if (!continues(own, other)) continue;
+      if (differs(glm::min(own.irradiance, other.irradiance), glm::max(own.irradiance, other.irradiance))) return false;
     }
     return true;
   }

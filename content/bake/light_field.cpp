@@ -51,6 +51,13 @@ glm::vec3 LightField::outgoing(const SurfaceHit& hit, glm::vec3, glm::vec3 unit_
   return point.emission_cd_m2 + point.albedo * std::numbers::inv_pi_v<float> * (direct + indirect);
 }
 
+glm::vec3 LightField::outgoing_lit(const SurfaceHit& hit, glm::vec3 unit_direction, float footprint_m,
+                                   glm::vec3 irradiance) const {
+  const SurfacePoint point = surface_at(impl_->scene, hit, unit_direction, footprint_m);
+  if (point.unlit) return point.emission_cd_m2;
+  return point.emission_cd_m2 + point.albedo * std::numbers::inv_pi_v<float> * irradiance;
+}
+
 glm::vec3 LightField::along(glm::vec3 origin_m, glm::vec3 unit_direction, float spread_rad, SurfaceHit* hit,
                             glm::vec3* irradiance) const {
   const SurfaceHit found = impl_->rays.closest(origin_m, unit_direction);

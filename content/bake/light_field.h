@@ -34,6 +34,8 @@ class LightField {
   // a surface facing it (for texture filtering); `irradiance` receives the light that arrives there (lux). Thread-safe.
   glm::vec3 outgoing(const SurfaceHit& hit, glm::vec3 origin_m, glm::vec3 unit_direction, float footprint_m,
                      glm::vec3* irradiance = nullptr) const;
+  // outgoing() under light that the caller already knows (lux): material and emission only, no shadow rays.
+  glm::vec3 outgoing_lit(const SurfaceHit& hit, glm::vec3 unit_direction, float footprint_m, glm::vec3 irradiance) const;
   // Radiance along a ray: outgoing() of what it meets, else the sky. spread_rad is the ray's angular width.
   glm::vec3 along(glm::vec3 origin_m, glm::vec3 unit_direction, float spread_rad, SurfaceHit* hit = nullptr,
                   glm::vec3* irradiance = nullptr) const;
