@@ -17,17 +17,20 @@ namespace {
 
 constexpr float kReachPerSpacing = 1.75f;   // five or six points speak at any place
 constexpr float kCellPerReach = 0.5f;       // smaller cells list fewer points in vain, in more lists
-constexpr float kOffPlane = 3.0f;           // distance across the surface counts this much more than along it
+constexpr float kOffPlane = 6.0f;           // distance across the surface counts this much more than along it
 constexpr float kSameFacing = 0.8f;         // cosine above which two points are in each other's way
 constexpr float kLeastFacing = 0.2f;        // cosine below which a point says nothing
 constexpr float kCandidatesPerSquare = 5.0f;
-constexpr float kHidden_m = 0.02f;
-constexpr int kHiddenRays = 32;
-constexpr float kHiddenShare = 0.9f;
+constexpr float kCandidatesPerLength = 2.0f;  // of a spacing, along thin triangles
+// Nobody sees a place whose hemisphere is nearly all closed this near, or inside a solid (back faces) this thick.
+constexpr float kHidden_m = 0.03f;
+constexpr float kInside_m = 0.25f;
+constexpr int kHiddenRays = 16;
+constexpr int kHiddenLeast = 15;
 constexpr float kLookHeight_m = 0.02f;      // thinner things (a rug's edge) do not part a surface
 constexpr float kLookTilt = 0.15f;          // tangent of the angle at which the view along the surface rises
 constexpr float kLookReach = 3.0f;          // in reaches: a wall must be known in the directions beside the nearest, too
-constexpr float kBlockedWeight = 1e-3f;     // of a point that does not see the place, or is hidden
+constexpr float kBlockedWeight = 1e-3f;     // of a point that does not see the place
 constexpr float kVanishing = 1e-12f;
 
 // Position among kSectors directions round a point: monotone in the angle, without trigonometry.
@@ -47,6 +50,21 @@ glm::vec2 sector_direction(int sector) {
   return glm::normalize(glm::vec2(x, y));
 }
 
+bool is_hidden(const RayScene& rays, glm::vec3 position_m, glm::vec3 normal) {
+  glm::vec3 tangent, bitangent;
+  tangent_frame(normal, tangent, bitangent);
+  const glm::vec3 origin = position_m + normal * ray_offset_m(position_m);
+  int closed = 0;
+  for (int k = 0; k < kHiddenRays; ++k) {
+    const glm::vec3 local = cosine_direction(hammersley(k, kHiddenRays));
+    const glm::vec3 direction = tangent * local.x + bitangent * local.y + normal * local.z;
+    const SurfaceHit hit = rays.closest(origin, direction, 0.0f, kInside_m);
+    closed += hit.hit && (hit.t < kHidden_m || glm::dot(hit.geometric_normal, direction) > 0.0f);
+    if (closed + kHiddenRays - 1 - k < kHiddenLeast) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 CachePoints::CachePoints(const Scene& scene, const RayScene& rays, double spacing_m, std::size_t max_points) {
@@ -57,13 +75,13 @@ CachePoints::CachePoints(const Scene& scene, const RayScene& rays, double spacin
     area_m2 += 0.5 * glm::length(glm::cross(b - a, c - a));
   }
   spacing_m = std::max(spacing_m, std::sqrt(1.2 * area_m2 / static_cast<double>(max_points)));
-  for (spacing_m_ = static_cast<float>(spacing_m); !scatter(scene, max_points);) spacing_m_ *= 1.2f;
+  for (spacing_m_ = static_cast<float>(spacing_m); !scatter(scene, rays, max_points);) spacing_m_ *= 1.2f;
   look_around(rays);
   build_index();
 }
 
 // Dart throwing over fixed candidates; false when there are too many.
-bool CachePoints::scatter(const Scene& scene, std::size_t max_points) {
+bool CachePoints::scatter(const Scene& scene, const RayScene& rays, std::size_t max_points) {
   reach_m_ = spacing_m_ * kReachPerSpacing;
   points_.clear();
   std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> taken;
@@ -75,7 +93,7 @@ bool CachePoints::scatter(const Scene& scene, std::size_t max_points) {
       if (found == taken.end()) continue;
       for (std::uint32_t index : found->second) {
         const Point& other = points_[index];
-        if (std::abs(glm::dot(other.normal, normal)) < kSameFacing) continue;
+        if (glm::dot(other.normal, normal) < kSameFacing) continue;
         const glm::vec3 offset = p - other.position_m;
         const float across = glm::dot(offset, other.normal);
         const float square = glm::dot(offset, offset) + (kOffPlane * kOffPlane - 1.0f) * across * across;
@@ -94,23 +112,21 @@ bool CachePoints::scatter(const Scene& scene, std::size_t max_points) {
     hit.triangle = t;
     hit.geometric_normal = cross / twice_area;
     const float squares = 0.5f * twice_area / (spacing_m_ * spacing_m_);
-    const auto candidates = 1u + static_cast<std::uint32_t>(std::min(squares * kCandidatesPerSquare, 1e6f));
+    const float lengths = std::max(glm::length(b - a), std::max(glm::length(c - b), glm::length(a - c))) / spacing_m_;
+    const float wanted = std::max(squares * kCandidatesPerSquare, lengths * kCandidatesPerLength);
+    const auto candidates = 1u + static_cast<std::uint32_t>(std::min(wanted, 1e6f));
     for (std::uint32_t k = 0; k < candidates; ++k) {
       const glm::vec2 square = r2_sequence(k);
       const float root = std::sqrt(square.x);
       hit.barycentric = {root * (1.0f - square.y), root * square.y};
-      const SurfacePoint surface = surface_at(scene, hit, -hit.geometric_normal, spacing_m_);
-      if (!is_free(surface.position_m, surface.normal)) continue;
-      if (points_.size() + 2 > max_points) return false;
-      taken[cell_key(cell_of(surface.position_m))].push_back(static_cast<std::uint32_t>(points_.size()));
-      Point point;
-      point.position_m = surface.position_m;
-      point.normal = surface.normal;
-      point.geometric_normal = surface.geometric_normal;
-      points_.push_back(point);
-      point.normal = -point.normal;
-      point.geometric_normal = -point.geometric_normal;
-      points_.push_back(point);
+      for (glm::vec3 towards : {-hit.geometric_normal, hit.geometric_normal}) {
+        const SurfacePoint surface = surface_at(scene, hit, towards, spacing_m_);
+        if (!is_free(surface.position_m, surface.normal)) continue;
+        if (is_hidden(rays, surface.position_m, surface.geometric_normal)) continue;
+        if (points_.size() == max_points) return false;
+        taken[cell_key(cell_of(surface.position_m))].push_back(static_cast<std::uint32_t>(points_.size()));
+        points_.push_back({surface.position_m, surface.normal, surface.geometric_normal, {}});
+      }
     }
   }
   return true;
@@ -121,14 +137,6 @@ void CachePoints::look_around(const RayScene& rays) {
     Point& point = points_[k];
     const glm::vec3 n = point.geometric_normal;
     glm::vec3 tangent, bitangent;
-    tangent_frame(n, tangent, bitangent);
-    const glm::vec3 origin = point.position_m + n * ray_offset_m(point.position_m);
-    int closed = 0;
-    for (int r = 0; r < kHiddenRays; ++r) {
-      const glm::vec3 local = cosine_direction(hammersley(r, kHiddenRays));
-      closed += rays.occluded(origin, tangent * local.x + bitangent * local.y + n * local.z, 0.0f, kHidden_m);
-    }
-    point.hidden = static_cast<float>(closed) > kHiddenShare * kHiddenRays;
     tangent_frame(point.normal, tangent, bitangent);
     for (int s = 0; s < kSectors; ++s) {
       const glm::vec2 along = sector_direction(s);
@@ -138,7 +146,7 @@ void CachePoints::look_around(const RayScene& rays) {
       point.nearness[s] = hit.hit ? static_cast<std::uint8_t>(std::min(nearness, 255.0f)) : 0;
     }
   });
-  rays_cast_ += points_.size() * (kHiddenRays + kSectors);
+  rays_cast_ += points_.size() * kSectors;
 }
 
 std::uint64_t CachePoints::cell_key(glm::ivec3 cell) const {
@@ -204,8 +212,7 @@ float CachePoints::open_fraction(const Point& point, glm::vec3 offset, float tan
   return std::clamp((free_m - tangential_m) / (0.15f * reach_m_), 0.0f, 1.0f);
 }
 
-glm::vec3 CachePoints::interpolate(const std::vector<glm::vec3>& values, glm::vec3 position_m, glm::vec3 normal,
-                                   bool with_hidden) const {
+glm::vec3 CachePoints::interpolate(const std::vector<glm::vec3>& values, glm::vec3 position_m, glm::vec3 normal) const {
   const Bucket* bucket = find(cell_key(glm::ivec3(glm::floor(position_m / cell_m_))));
   if (!bucket) return glm::vec3(0.0f);
   const float inverse_square = 1.0f / (reach_m_ * reach_m_);
@@ -219,11 +226,10 @@ glm::vec3 CachePoints::interpolate(const std::vector<glm::vec3>& values, glm::ve
     const float square = (straight_square + (kOffPlane * kOffPlane - 1.0f) * across * across) * inverse_square;
     if (facing <= kLeastFacing || square >= 1.0f) continue;
     const Point& point = points_[member.point];
-    if (point.hidden && !with_hidden) continue;
     const float along_m = std::sqrt(std::max(straight_square - across * across, 0.0f));
     const float kernel = (1.0f - square) * (1.0f - square);
     const float turned = (facing - kLeastFacing) / (1.0f - kLeastFacing);
-    const float open = point.hidden ? 0.0f : open_fraction(point, offset, along_m);
+    const float open = open_fraction(point, offset, along_m);
     const float weight = kernel * turned * turned * (open + kBlockedWeight);
     sum += values[member.point] * weight;
     weights += weight;

@@ -1,4 +1,5 @@
-// Points spread over all surfaces, both sides, about a spacing apart, and the smooth interpolation between them.
+// Points spread over all surfaces that can be seen, both sides, about a spacing apart, and the smooth interpolation
+// between them.
 // A point speaks for a flat neighbourhood of its own side only, as far as the surface lies open around it: light does
 // not leak under walls, through thin sheets, or out from under furniture.
 #pragma once
@@ -23,7 +24,6 @@ class CachePoints {
     // How near the surface around is closed, by direction: kNearSteps * reach / free way; 0 = open. The reciprocal is
     // what interpolates well: along a straight wall it is affine in the direction.
     std::array<std::uint8_t, kSectors> nearness{};
-    bool hidden = false;  // nearly all of its hemisphere is closed within centimetres: nobody sees it
   };
 
   // Spacing is raised until at most max_points are needed; spacing_m() says what it became.
@@ -34,10 +34,8 @@ class CachePoints {
   float spacing_m() const { return spacing_m_; }
   std::uint64_t rays_cast() const { return rays_cast_; }
 
-  // Interpolates values (one per point) at a surface position with unit normal. with_hidden = false leaves hidden points
-  // out altogether; else they count where nothing better is near. Thread-safe.
-  glm::vec3 interpolate(const std::vector<glm::vec3>& values, glm::vec3 position_m, glm::vec3 normal,
-                        bool with_hidden = true) const;
+  // Interpolates values (one per point) at a surface position with unit normal. Thread-safe.
+  glm::vec3 interpolate(const std::vector<glm::vec3>& values, glm::vec3 position_m, glm::vec3 normal) const;
 
  private:
   static constexpr float kNearSteps = 12.0f;
@@ -52,7 +50,7 @@ class CachePoints {
     std::uint32_t first = 0, count = 0;
   };
 
-  bool scatter(const Scene& scene, std::size_t max_points);
+  bool scatter(const Scene& scene, const RayScene& rays, std::size_t max_points);
   void look_around(const RayScene& rays);
   void build_index();
   std::uint64_t cell_key(glm::ivec3 cell) const;

@@ -58,7 +58,7 @@ struct IrradianceCache::Gather {
       all_cast += own;
     });
     cast += all_cast;
-    return fill_hidden(values);
+    return values;
   }
 
   Values gather(const Values& source, int samples, std::uint32_t pass, Values* emitted, std::uint64_t& cast) {
@@ -66,8 +66,7 @@ struct IrradianceCache::Gather {
     if (emitted) emitted->assign(points.size(), glm::vec3(0.0f));
     for_each_point([&](std::size_t k) { gather_point(k, source, samples, pass, values[k], emitted ? &(*emitted)[k] : nullptr); });
     cast += points.size() * static_cast<std::uint64_t>(samples);
-    if (emitted) *emitted = fill_hidden(*emitted);
-    return fill_hidden(values);
+    return values;
   }
 
   // Each point the mean of its open neighbourhood: what few rays found (a patch of sun) must not show as a blotch.
@@ -85,7 +84,7 @@ struct IrradianceCache::Gather {
   void for_each_point(Work&& work) {
     tbb::parallel_for(std::size_t(0), points.size(), [&](std::size_t k) {
       if (progress.cancelled()) return;
-      if (!points[k].hidden) work(k);
+      work(k);
       if (++done % 1024 == 0) progress.advance(1024);
     });
     if (progress.cancelled()) throw Interrupted("interrupted while lighting; give the same command again to start over from there");
@@ -117,16 +116,6 @@ struct IrradianceCache::Gather {
     // Cosine-distributed: irradiance = pi * mean radiance; reflected radiance = albedo / pi * irradiance.
     reflected = sum / static_cast<float>(samples);
     if (emitted) *emitted = own * (std::numbers::pi_v<float> / static_cast<float>(samples));
-  }
-
-  // Hidden points take what their neighbours have, for places that only they are near.
-  Values fill_hidden(Values values) const {
-    Values filled = values;
-    tbb::parallel_for(std::size_t(0), points.size(), [&](std::size_t k) {
-      const CachePoints::Point& p = points[k];
-      if (p.hidden) filled[k] = points.interpolate(values, p.position_m, p.normal, false);
-    });
-    return filled;
   }
 };
 
