@@ -22,9 +22,10 @@ constexpr float kSameFacing = 0.8f;         // cosine above which two points are
 constexpr float kLeastFacing = 0.2f;        // cosine below which a point says nothing
 constexpr float kCandidatesPerSquare = 5.0f;
 constexpr float kCandidatesPerLength = 2.0f;  // of a spacing, along thin triangles
-// Nobody sees a place whose hemisphere is nearly all closed this near, or inside a solid (back faces) this thick.
+// Nobody sees a place whose hemisphere is nearly all closed this near, or inside a solid: back faces this near. Wrongly wound
+// rooms are larger than that.
 constexpr float kHidden_m = 0.03f;
-constexpr float kInside_m = 0.25f;
+constexpr float kInside_m = 1.0f;
 constexpr int kHiddenRays = 16;
 constexpr int kHiddenLeast = 15;
 constexpr float kLookHeight_m = 0.02f;      // thinner things (a rug's edge) do not part a surface

@@ -15,7 +15,7 @@ constexpr std::size_t kViews = 32;
 constexpr int kWidth_px = 48, kHeight_px = 36;
 constexpr float kTanHalfHeight = 0.6f;  // about 62 degrees high
 // The log-average luminance of a view is shown as this share of white: interiors read as lit, not as the grey of a card.
-constexpr double kKey = 0.15;
+constexpr double kKey = 0.20;
 // A tour sees dim rooms and bright courtyards; the picture is exposed for this share of the way from the dimmest view
 // to the brightest, in order. Eyes forgive a bright outside more than a black room.
 constexpr double kViewShare = 0.3;
