@@ -8,27 +8,36 @@
 // Relative differences of w, in codes: one surface, and surely another (1 %, 2 %).
 #define PW_TEXEL_W_SAME 24.0f
 #define PW_TEXEL_W_OTHER 47.0f
+// Beyond this (6 %) none of the four texels is the hit's surface; the ring around them is searched.
+#define PW_TEXEL_W_LOST 150.0f
+// Instead of a code: take every texel, whatever its surface.
+#define PW_TEXEL_W_ANY -1.0f
 
 PW_FUNCTION pw_vec3 decode_texel(pw_uint word) {
   float unit = pw_float_from_bits(((word >> 27) + 103u) << 23);  // 2^(exponent - 24)
   return pw_vec3(float(word & 511u), float((word >> 9) & 511u), float((word >> 18) & 511u)) * unit;
 }
 
-// Index of texel (i, j) of an r x r map, one step outside folded back over the octahedron's edges.
+// Index of texel (i, j) of an r x r map, steps outside folded back over the octahedron's edges.
 PW_FUNCTION int folded_texel(int i, int j, int r) {
   if (i < 0 || i >= r) {
-    i = i < 0 ? 0 : r - 1;
+    i = i < 0 ? -1 - i : 2 * r - 1 - i;
     j = r - 1 - j;
   }
   if (j < 0 || j >= r) {
-    j = j < 0 ? 0 : r - 1;
+    j = j < 0 ? -1 - j : 2 * r - 1 - j;
     i = r - 1 - i;
   }
   return min(max(j, 0), r - 1) * r + min(max(i, 0), r - 1);
 }
 
-// Bilinear look-up in one mip at uv in [-1, 1]^2. w_code: log code of the surface that was hit, 0 = take every texel;
-// used in the finest mip only, where texels are small enough to belong to one surface.
+PW_FUNCTION float texel_w_code(ProbeRecord probe, int texel) {
+  int codes = ((4 << (2 * int(probe.r_log2))) - 1) / 3;  // behind the whole mip chain
+  return float((pw_word(probe.radiance_address, codes + (texel >> 1)) >> (16u * pw_uint(texel & 1))) & 65535u);
+}
+
+// Bilinear look-up in one mip at uv in [-1, 1]^2. w_code: log code of the surface that was hit, 0 for sky, or
+// PW_TEXEL_W_ANY; used in the finest mip only, where texels are small enough to belong to one surface.
 PW_FUNCTION pw_vec3 sample_mip(ProbeRecord probe, int mip, pw_vec2 uv, float w_code, PW_INOUT(pw_uint) reads) {
   int r_log2 = int(probe.r_log2);
   int r = 1 << (r_log2 - mip);
@@ -42,13 +51,8 @@ PW_FUNCTION pw_vec3 sample_mip(ProbeRecord probe, int mip, pw_vec2 uv, float w_c
   int t01 = folded_texel(i, j + 1, r), t11 = folded_texel(i + 1, j + 1, r);
   pw_vec4 weight = pw_vec4((1.0f - fx) * (1.0f - fy), fx * (1.0f - fy), (1.0f - fx) * fy, fx * fy);
   reads += 4u;
-  if (mip == 0 && w_code > 0.0f) {
-    int codes = 4 * full / 3;  // behind the whole chain
-    pw_vec4 code;
-    code.x = float((pw_word(probe.radiance_address, codes + (t00 >> 1)) >> (16u * pw_uint(t00 & 1))) & 65535u);
-    code.y = float((pw_word(probe.radiance_address, codes + (t10 >> 1)) >> (16u * pw_uint(t10 & 1))) & 65535u);
-    code.z = float((pw_word(probe.radiance_address, codes + (t01 >> 1)) >> (16u * pw_uint(t01 & 1))) & 65535u);
-    code.w = float((pw_word(probe.radiance_address, codes + (t11 >> 1)) >> (16u * pw_uint(t11 & 1))) & 65535u);
+  if (mip == 0 && w_code >= 0.0f) {
+    pw_vec4 code = pw_vec4(texel_w_code(probe, t00), texel_w_code(probe, t10), texel_w_code(probe, t01), texel_w_code(probe, t11));
     reads += 4u;
     float mean = weight.x * code.x + weight.y * code.y + weight.z * code.z + weight.w * code.w;
     // On one plane w is affine, so the four blend to the hit's own w. Where they do not, an outline runs between them:
@@ -56,6 +60,23 @@ PW_FUNCTION pw_vec3 sample_mip(ProbeRecord probe, int mip, pw_vec2 uv, float w_c
     if (abs(mean - w_code) > PW_TEXEL_W_SAME) {
       pw_vec4 off = pw_vec4(abs(code.x - w_code), abs(code.y - w_code), abs(code.z - w_code), abs(code.w - w_code));
       float closest = min(min(off.x, off.y), min(off.z, off.w));
+      if (closest > PW_TEXEL_W_LOST) {
+        // A sliver that no centre nearby has seen: the most similar texel of the ring around the four lends its colour.
+        int similar = -1;
+        for (int k = 0; k < 16; ++k) {
+          int dx = k & 3, dy = k >> 2;
+          if ((dx == 1 || dx == 2) && (dy == 1 || dy == 2)) continue;
+          int texel = folded_texel(i + dx - 1, j + dy - 1, r);
+          float ring_off = abs(texel_w_code(probe, texel) - w_code);
+          reads += 1u;
+          if (ring_off < closest) {
+            closest = ring_off;
+            similar = texel;
+          }
+        }
+        if (similar >= 0 && closest <= PW_TEXEL_W_LOST) return decode_texel(pw_word(probe.radiance_address, base + similar));
+        closest = min(min(off.x, off.y), min(off.z, off.w));
+      }
       float limit = PW_TEXEL_W_OTHER + 2.0f * closest;
       weight.x = off.x <= limit ? weight.x + 1e-4f : 0.0f;
       weight.y = off.y <= limit ? weight.y + 1e-4f : 0.0f;
@@ -93,11 +114,11 @@ PW_FUNCTION pw_vec3 ray_radiance(GridConstants grid, TraceConstants dials, RayAn
   float mip = min(max(log2(max(ratio, 1e-6f)), 0.0f), float(probe.r_log2));
   int finer = int(mip);
   float blend = mip - float(finer);
-  float w_code = far ? 0.0f : PW_TEXEL_W_ONE - PW_TEXEL_W_PER_OCTAVE * log2(len1);
+  float w_code = answer.environment ? PW_TEXEL_W_ANY : far ? 0.0f : PW_TEXEL_W_ONE - PW_TEXEL_W_PER_OCTAVE * log2(len1);
   pw_vec2 uv = pw_vec2(octahedral_uv(x));
   pw_vec3 radiance = sample_mip(probe, finer, uv, w_code, reads);
   if (blend > 0.0f && finer < int(probe.r_log2)) {
-    radiance = radiance * (1.0f - blend) + sample_mip(probe, finer + 1, uv, 0.0f, reads) * blend;
+    radiance = radiance * (1.0f - blend) + sample_mip(probe, finer + 1, uv, PW_TEXEL_W_ANY, reads) * blend;
   }
   return radiance / dials.radiance_scale;
 }
