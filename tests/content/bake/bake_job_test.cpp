@@ -22,12 +22,15 @@ class StoppingProgress final : public Progress {
  public:
   explicit StoppingProgress(std::uint64_t after_texels) : after_(after_texels) {}
   void begin(std::string_view stage, std::uint64_t, std::string_view) override { counting_ = stage == "probes"; }
-  void advance(std::uint64_t done) override { stop_ = stop_ || (counting_ && done >= after_); }
+  void advance(std::uint64_t step) override {
+    if (counting_) stop_ = (done_ += step) >= after_;
+  }
   void note(std::string_view) override {}
   bool cancelled() const override { return stop_; }
 
  private:
   std::uint64_t after_;
+  std::atomic<std::uint64_t> done_ = 0;
   bool counting_ = false;
   std::atomic<bool> stop_ = false;
 };
