@@ -92,6 +92,17 @@ TEST(WholeWay, TraceAnswersLineByLine) {
   EXPECT_GT(lookups, 0u);
 }
 
+TEST(WholeWay, RaysAreCheckedLineByLine) {
+  const fs::path dir = fresh_folder("bad-rays");
+  for (const char* bad : {"0 1 0 0 0 0", "0 1 nan 0 0 -1", "0 1 0 0 0", "0 1 0 0 0 -1 7", "a b c d e f", "1e30 1 0 0 0 -1"}) {
+    std::ofstream(dir / "rays.txt") << "0 1 0 0 0 -1\n" << bad << "\n";
+    const RunResult r = run_probewalk(dir, {"trace", sample_pack().string(), "--rays", (dir / "rays.txt").string()});
+    EXPECT_EQ(r.exit_code, 3) << bad;
+    EXPECT_EQ(r.out, "") << bad;
+    EXPECT_THAT(r.err, ::testing::HasSubstr("line 2")) << bad;
+  }
+}
+
 TEST(WholeWay, TwoBakesAreByteIdentical) {
   const fs::path dir = fresh_folder("twice");
   const fs::path scene = sample_pack().parent_path() / "two.glb";
