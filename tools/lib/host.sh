@@ -95,7 +95,8 @@ remove_root() {  # DIR: nothing is mounted in it, but --one-file-system costs no
 }
 
 # Makes a Debian 13 root with every package of the list in DIR. About 80 s; .deb files are kept for the next time.
-make_root() {  # DIR
+# In a subshell: its clean-up on exit must not take the place of the caller's.
+make_root() (  # DIR
   local dir=$1 new=$1.new.$$ log=$D13/root.log cache=$D13/apt-cache include key
   command -v unshare >/dev/null || fail "unshare is missing; install util-linux"
   if ! command -v mmdebstrap >/dev/null; then
@@ -129,9 +130,8 @@ make_root() {  # DIR
   remove_root "$dir.old"
   [ ! -e "$dir" ] || mv "$dir" "$dir.old"
   mv "$new" "$dir"
-  trap - EXIT
   remove_root "$dir.old"
-}
+)
 
 root_failed() {  # LOG
   grep '^E:' "$1" | tail -n 2 >&2
