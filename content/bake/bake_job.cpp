@@ -13,6 +13,7 @@
 #include "content/bake/bake_probe.h"
 #include "content/bake/bake_state.h"
 #include "content/bake/exposure.h"
+#include "content/bake/plan_picture.h"
 #include "content/error.h"
 #include "content/pack/pack_format.h"
 #include "content/pack/pack_io.h"
@@ -88,11 +89,14 @@ class BakeJob {
     find_places();
     const std::vector<bool> wanted = wanted_rooms();
     note_estimate(wanted);
-    const LightField light(scene_, rays_, options_.light, progress_);
+    const std::string key_text = manifest_.scene_hash + manifest_.options_hash;
+    const BakeState state(options_.pack.string() + ".partial", content_hash(std::as_bytes(std::span(key_text))));
+    const LightField light(scene_, rays_, options_.light, progress_, state.load_light());
+    state.store_light(light.cache_values());
     const Exposure exposure = choose_exposure(light, tour_);
     manifest_.radiance_scale = exposure.radiance_scale;
     manifest_.exposure_ev = exposure.exposure_ev;
-    bake_rooms(light, wanted);
+    bake_rooms(light, state, wanted);
     report_.rays += light.rays_cast();
     report_.seconds = seconds_since(start);
     report_.rooms = manifest_.rooms.size();
@@ -112,6 +116,8 @@ class BakeJob {
     manifest_.scale = scene_.scale;
     manifest_.scale_statement = scene_.scale_statement;
     manifest_.light_statement = scene_.light_statement;
+    manifest_.light = BakedLight{options_.light.samples, options_.light.bounces, options_.light.cache_spacing_m,
+                                 options_.light.seed, options_.load.recentre};
     manifest_.credits = scene_.credits;
     manifest_.bounds = scene_.bounds;
     manifest_.warnings = scene_.warnings;
@@ -131,6 +137,7 @@ class BakeJob {
                                  options_.scene_file.string()));
     }
     if (!placement.statement.empty()) progress_.note(placement.statement);
+    plan_ = draw_plan(space, placement);
     for (const std::string& warning : space.warnings) {
       progress_.note("warning: " + warning);
       manifest_.warnings.push_back(warning);
@@ -199,9 +206,7 @@ class BakeJob {
                                static_cast<double>(estimate.bytes_disk) / (1 << 20)));
   }
 
-  void bake_rooms(const LightField& light, const std::vector<bool>& wanted) {
-    const std::string key_text = manifest_.scene_hash + manifest_.options_hash;
-    const BakeState state(options_.pack.string() + ".partial", content_hash(std::as_bytes(std::span(key_text))));
+  void bake_rooms(const LightField& light, const BakeState& state, const std::vector<bool>& wanted) {
     PackWriter writer(options_.pack);
     std::uint64_t texels = 0;
     for (const LevelSize& size : levels_) texels += probes_in(wanted) * size.radiance * size.radiance;
@@ -218,6 +223,8 @@ class BakeJob {
     if (cut_cells_ > 0) add_feature("cuts");
     writer.finish(manifest_);
     state.remove();
+    report_.plan = fs::path(options_.pack).replace_extension(".plan.png");
+    write_png(report_.plan, plan_);
   }
 
   LevelEntry bake_level(const LightField& light, const BakeState& state, const RoomEntry& room, LevelSize size,
@@ -279,6 +286,7 @@ class BakeJob {
   const std::vector<LevelSize> levels_;
   Manifest manifest_;
   std::vector<Pose> tour_;
+  ImageRgb8 plan_;
   BakeReport report_;
   double baking_seconds_ = 0.0;  // of the probes baked now, without those kept from before
   std::uint64_t baked_texels_ = 0, done_texels_ = 0, cut_cells_ = 0, all_cells_ = 0;

@@ -38,6 +38,7 @@ struct BakeReport {
   std::uint64_t bytes_disk = 0;
   std::uint64_t bytes_device = 0;
   double connected_fraction = 0.0;  // of cells
+  std::filesystem::path plan;       // picture from above beside the pack: floors, rooms, probes, tour
 };
 
 // Throws BadInput, BadUsage, Interrupted. An existing whole pack of other options or another scene is replaced.

@@ -17,6 +17,8 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* kKeyFile = "bake-key";
+constexpr const char* kLightFile = "light-cache";
+constexpr std::uint64_t kLightFileBytes = 64u << 20;
 constexpr std::size_t kHashBytes = 32;
 constexpr std::uint64_t kKeyFileBytes = 4096;
 
@@ -46,6 +48,29 @@ ProbeMap sized_map(glm::dvec3 position_m, int n, int r) {
   map.radiance.rgb9e5.resize(mip_chain_texels(r));
   map.radiance.texel_w.resize(std::size_t(r) * r);
   return map;
+}
+
+// A file of a hash and what it is of.
+void write_hashed(const fs::path& file, std::vector<std::byte> bytes) {
+  const std::string hash = content_hash(std::span(bytes).subspan(kHashBytes));
+  std::memcpy(bytes.data(), hash.data(), kHashBytes);
+  write_file_whole(file, bytes);
+}
+
+// Empty when the file is not there, longer than `most`, or not what was written.
+std::vector<std::byte> read_hashed(const fs::path& file, std::uint64_t most) {
+  std::error_code error;
+  if (!fs::exists(file, error)) return {};
+  std::vector<std::byte> bytes;
+  try {
+    bytes = read_file(file, most);
+  } catch (const BadInput&) {
+    return {};
+  }
+  if (bytes.size() < kHashBytes) return {};
+  const std::string hash = content_hash(std::span(bytes).subspan(kHashBytes));
+  if (std::memcmp(hash.data(), bytes.data(), kHashBytes) != 0) return {};
+  return bytes;
 }
 
 std::span<const std::byte> bytes_of(const std::string& text) { return std::as_bytes(std::span(text)); }
@@ -81,18 +106,9 @@ std::optional<ProbeMap> BakeState::load(std::size_t probe, glm::dvec3 position_m
   ProbeMap map = sized_map(position_m, n, r);
   std::size_t expected = kHashBytes;
   for_each_array(map, [&](const auto& array) { expected += std::as_bytes(std::span(array)).size(); });
-  std::error_code error;
-  if (!fs::exists(file(probe, n, r), error)) return {};
-  std::vector<std::byte> bytes;
-  try {
-    bytes = read_file(file(probe, n, r), expected);
-  } catch (const BadInput&) {
-    return {};
-  }
+  const std::vector<std::byte> bytes = read_hashed(file(probe, n, r), expected);
   if (bytes.size() != expected) return {};
   const std::span<const std::byte> payload = std::span(bytes).subspan(kHashBytes);
-  const std::string hash = content_hash(payload);
-  if (std::memcmp(hash.data(), bytes.data(), kHashBytes) != 0) return {};
   std::size_t at = 0;
   for_each_array(map, [&](auto& array) {
     const std::span<std::byte> out = std::as_writable_bytes(std::span(array));
@@ -108,9 +124,23 @@ void BakeState::store(std::size_t probe, const ProbeMap& map) const {
     const std::span<const std::byte> part = std::as_bytes(std::span(array));
     bytes.insert(bytes.end(), part.begin(), part.end());
   });
-  const std::string hash = content_hash(std::span(bytes).subspan(kHashBytes));
-  std::memcpy(bytes.data(), hash.data(), kHashBytes);
-  write_file_whole(file(probe, map.geometry.n, map.radiance.r), bytes);
+  write_hashed(file(probe, map.geometry.n, map.radiance.r), std::move(bytes));
+}
+
+std::vector<glm::vec3> BakeState::load_light() const {
+  const std::vector<std::byte> bytes = read_hashed(folder_ / kLightFile, kLightFileBytes);
+  std::vector<glm::vec3> values;
+  if (bytes.empty() || (bytes.size() - kHashBytes) % sizeof(glm::vec3) != 0) return values;
+  values.resize((bytes.size() - kHashBytes) / sizeof(glm::vec3));
+  std::memcpy(values.data(), bytes.data() + kHashBytes, bytes.size() - kHashBytes);
+  return values;
+}
+
+void BakeState::store_light(const std::vector<glm::vec3>& values) const {
+  std::vector<std::byte> bytes(kHashBytes);
+  const auto part = std::as_bytes(std::span(values));
+  bytes.insert(bytes.end(), part.begin(), part.end());
+  write_hashed(folder_ / kLightFile, std::move(bytes));
 }
 
 void BakeState::remove() const {
@@ -119,7 +149,7 @@ void BakeState::remove() const {
   std::vector<fs::path> ours;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder_, error)) {
     const std::string name = entry.path().filename().string();
-    if (name == kKeyFile || name.starts_with("probe-") || name.starts_with(kPartialFilePrefix)) ours.push_back(entry.path());
+    if (name == kKeyFile || name == kLightFile || name.starts_with("probe-") || name.starts_with(kPartialFilePrefix)) ours.push_back(entry.path());
   }
   for (const fs::path& path : ours) fs::remove(path, error);
   fs::remove(folder_, error);

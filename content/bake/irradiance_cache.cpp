@@ -87,7 +87,7 @@ struct IrradianceCache::Gather {
       work(k);
       if (++done % 1024 == 0) progress.advance(1024);
     });
-    if (progress.cancelled()) throw Interrupted("interrupted while lighting; give the same command again to start over from there");
+    if (progress.cancelled()) throw Interrupted("interrupted while lighting; nothing of it is kept");
   }
 
   void gather_point(std::size_t k, const Values& source, int samples, std::uint32_t pass, glm::vec3& reflected,
@@ -120,8 +120,12 @@ struct IrradianceCache::Gather {
 };
 
 IrradianceCache::IrradianceCache(const Scene& scene, const RayScene& rays, const DirectLight& direct,
-                                 const LightOptions& options, Progress& progress)
+                                 const LightOptions& options, Progress& progress, std::vector<glm::vec3> kept)
     : points_(scene, rays, options.cache_spacing_m, kMaxPoints), rays_cast_(points_.rays_cast()) {
+  if (!kept.empty() && kept.size() == points_.size()) {
+    indirect_ = std::move(kept);
+    return;
+  }
   Gather gather{scene, rays, direct, points_, options.seed, progress};
   const int bounces = std::max(options.bounces, 0);
   progress.begin("light cache", points_.size() * static_cast<std::uint64_t>(2 + std::max(bounces, 1)), "points");

@@ -14,9 +14,10 @@ namespace probewalk {
 
 class IrradianceCache {
  public:
-  // Throws Interrupted when progress is cancelled.
+  // kept: values() of an earlier, equal cache; used when they are as many as there are points. Throws Interrupted when
+  // progress is cancelled.
   IrradianceCache(const Scene& scene, const RayScene& rays, const DirectLight& direct, const LightOptions& options,
-                  Progress& progress);
+                  Progress& progress, std::vector<glm::vec3> kept);
 
   // Irradiance (lux) from everything that DirectLight does not count: sky, large emitters, reflected light.
   glm::vec3 indirect(glm::vec3 position_m, glm::vec3 normal) const {

@@ -17,8 +17,12 @@
 namespace probewalk {
 
 struct LightField::Impl {
-  Impl(const Scene& scene_in, const RayScene& rays_in, const LightOptions& options, Progress& progress)
-      : scene(scene_in), rays(rays_in), direct(scene_in, rays_in), cache(scene_in, rays_in, direct, options, progress) {}
+  Impl(const Scene& scene_in, const RayScene& rays_in, const LightOptions& options, Progress& progress,
+       std::vector<glm::vec3> kept)
+      : scene(scene_in),
+        rays(rays_in),
+        direct(scene_in, rays_in),
+        cache(scene_in, rays_in, direct, options, progress, std::move(kept)) {}
 
   const Scene& scene;
   const RayScene& rays;
@@ -27,10 +31,11 @@ struct LightField::Impl {
   mutable tbb::combinable<std::uint64_t> rays_cast{[] { return std::uint64_t(0); }};
 };
 
-LightField::LightField(const Scene& scene, const RayScene& rays, const LightOptions& options, Progress& progress) {
+LightField::LightField(const Scene& scene, const RayScene& rays, const LightOptions& options, Progress& progress,
+                       std::vector<glm::vec3> kept) {
   std::optional<tbb::global_control> limit;
   if (options.threads > 0) limit.emplace(tbb::global_control::max_allowed_parallelism, options.threads);
-  impl_ = std::make_unique<Impl>(scene, rays, options, progress);
+  impl_ = std::make_unique<Impl>(scene, rays, options, progress, std::move(kept));
   if (impl_->cache.spacing_m() > 1.001 * options.cache_spacing_m) {
     progress.note(fmt::format("indirect light is cached every {:.2f} m instead of {:.2f} m: the scene is large",
                               impl_->cache.spacing_m(), options.cache_spacing_m));
@@ -71,6 +76,8 @@ std::uint64_t LightField::rays_cast() const {
 }
 
 std::size_t LightField::cache_points() const { return impl_->cache.size(); }
+
+const std::vector<glm::vec3>& LightField::cache_values() const { return impl_->cache.values(); }
 
 std::string LightField::hash() const { return content_hash(std::as_bytes(std::span(impl_->cache.values()))); }
 

@@ -7,6 +7,7 @@
 #include <glm/glm.hpp>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "content/progress.h"
 #include "content/scene/ray_scene.h"
@@ -25,7 +26,9 @@ struct LightOptions {
 class LightField {
  public:
   // Builds the irradiance cache (long: reports progress, obeys cancellation). Deterministic, whatever the threads.
-  LightField(const Scene& scene, const RayScene& rays, const LightOptions& options, Progress& progress);
+  // kept: cache_values() of an equal scene and equal options, which spare the work; others than that many are ignored.
+  LightField(const Scene& scene, const RayScene& rays, const LightOptions& options, Progress& progress,
+             std::vector<glm::vec3> kept = {});
   ~LightField();
   LightField(const LightField&) = delete;
   LightField& operator=(const LightField&) = delete;
@@ -45,6 +48,7 @@ class LightField {
   // Rays cast so far: by the cache, and shadow rays by outgoing().
   std::uint64_t rays_cast() const;
   std::size_t cache_points() const;
+  const std::vector<glm::vec3>& cache_values() const;
 
  private:
   struct Impl;

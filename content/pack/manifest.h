@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <glm/glm.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,16 @@ struct RoomEntry {
   std::vector<LevelEntry> levels;  // coarse to fine
 };
 
+// How the bake sampled light, so that a reference picture can do the same.
+struct BakedLight {
+  int samples = 0, bounces = 0;
+  double cache_spacing_m = 0.0;
+  std::uint32_t seed = 0;
+  bool recentred = false;  // the scene was moved to the origin
+
+  bool operator==(const BakedLight&) const = default;
+};
+
 struct Manifest {
   std::uint32_t format_version = 1;
   std::string producer;
@@ -41,6 +52,7 @@ struct Manifest {
   double scale = 1.0;
   std::string scale_statement;
   std::string light_statement;
+  std::optional<BakedLight> light;
   std::string credits;
   Bounds bounds;
   std::vector<std::string> features;  // known: "sky" (some probe sees it), "cuts"

@@ -1,7 +1,7 @@
 // The manifest as JSON text (one object, no white space, keys sorted, UTF-8), its self-hash, and back.
 //
 //   manifest_hash, format_version, producer, scene {name, hash}, options_hash, scale, scale_statement,
-//   light_statement, credits, bounds, features [name], radiance_scale, exposure_ev,
+//   light_statement, light {samples, bounces, cache_spacing_m, seed, recentred} (may be absent), credits, bounds, features [name], radiance_scale, exposure_ev,
 //   rooms [{id, name, bounds, origin_m, first_probe, probe_count,
 //           levels [{chunk, geometry_size, radiance_size, bytes_disk, bytes_device, error (null = not measured)}]}],
 //   portals [{rooms [a, b], polygon [[x, y, z]]}], probe_positions_m [[x, y, z]],
@@ -80,6 +80,14 @@ json to_json(const ProbeGrid& grid) {
           {"probe", grid.probe}};
 }
 
+json to_json(const BakedLight& light) {
+  return {{"samples", light.samples},
+          {"bounces", light.bounces},
+          {"cache_spacing_m", light.cache_spacing_m},
+          {"seed", light.seed},
+          {"recentred", light.recentred}};
+}
+
 json to_json(const FloorMap& floor) {
   return {{"origin_m", {floor.origin_m.x, floor.origin_m.y}},
           {"cell_m", floor.cell_m},
@@ -132,7 +140,12 @@ class Member {
     if (!value_.is_string()) refuse("is not a text");
     return value_.get_ref<const std::string&>();
   }
+  bool boolean() const {
+    if (!value_.is_boolean()) refuse("is neither true nor false");
+    return value_.get<bool>();
+  }
   bool is_null() const { return value_.is_null(); }
+  bool has(const char* key) const { return value_.is_object() && value_.contains(key); }
 
   glm::dvec3 vector() const {
     const auto v = numbers<3>();
@@ -158,6 +171,19 @@ class Member {
   std::string path_;
   const std::string& source_;
 };
+
+BakedLight read_light(const Member& m) {
+  BakedLight light;
+  light.samples = m["samples"].integer<int>();
+  light.bounces = m["bounces"].integer<int>();
+  light.cache_spacing_m = m["cache_spacing_m"].number();
+  light.seed = m["seed"].integer<std::uint32_t>();
+  light.recentred = m["recentred"].boolean();
+  if (light.samples < 1 || light.samples > 65536) m["samples"].refuse("is out of range");
+  if (light.bounces > 64) m["bounces"].refuse("is out of range");
+  if (!(light.cache_spacing_m >= 1e-6)) m["cache_spacing_m"].refuse("is out of range");
+  return light;
+}
 
 LevelEntry read_level(const Member& m) {
   LevelEntry level;
@@ -237,6 +263,7 @@ Manifest read_manifest(const Member& m) {
   manifest.scale = m["scale"].number();
   manifest.scale_statement = m["scale_statement"].text();
   manifest.light_statement = m["light_statement"].text();
+  if (m.has("light")) manifest.light = read_light(m["light"]);
   manifest.credits = m["credits"].text();
   manifest.bounds = m["bounds"].bounds();
   manifest.radiance_scale = m["radiance_scale"].number();
@@ -316,6 +343,7 @@ std::string serialise_manifest(const Manifest& manifest) {
                 {"start", to_json(manifest.start)},
                 {"tour", to_json(manifest.tour)},
                 {"warnings", manifest.warnings}};
+  if (manifest.light) document["light"] = to_json(*manifest.light);
   // Names come from glTF files of any making: bytes that are no UTF-8 become U+FFFD.
   std::string text = document.dump(-1, ' ', false, json::error_handler_t::replace);
   if (text.size() > PackLimits::kManifestBytes) {

@@ -27,6 +27,7 @@ struct RayAnswer {
   bool environment;  // unknown and nothing plausible at the stop point: radiance comes from the direction alone
   pw_uint lookups;   // dependent reads: pyramid nodes, cells, start tests
   pw_uint tries;     // walks
+  real3 plane;       // of a hit: the plane that was met, relative to the probe (tracer_walk.h); else 0
 };
 
 // Origin relative to a probe: float-float differences, exact to one ulp however far from the scene's origin.
@@ -121,6 +122,7 @@ PW_FUNCTION RayAnswer trace_ray(GridConstants grid, TraceConstants dials, real3 
   answer.environment = false;
   answer.lookups = 0u;
   answer.tries = 0u;
+  answer.plane = real3(0);
 
   int failed_probe[PW_TRIES_LIMIT];
   real failed_t[PW_TRIES_LIMIT];
@@ -162,6 +164,7 @@ PW_FUNCTION RayAnswer trace_ray(GridConstants grid, TraceConstants dials, real3 
       answer.cls = walk.status;
       answer.t = walk.status == kClassHit ? walk.t : PW_NEVER;
       answer.probe = chosen;
+      answer.plane = walk.plane;
       return answer;
     }
     failed_probe[failures] = chosen;

@@ -5,13 +5,24 @@
 // Log-coded w: codes a doubling, and the code of w = 1 (content/probe/probe_map.h, encode_texel_w).
 #define PW_TEXEL_W_PER_OCTAVE 1638.35f
 #define PW_TEXEL_W_ONE 32768.0f
-// Relative differences of w, in codes: one surface, and surely another (1 %, 2 %).
-#define PW_TEXEL_W_SAME 24.0f
-#define PW_TEXEL_W_OTHER 47.0f
+// A texel belongs to the hit's surface when the w that its centre has seen is the one that the surface's plane has there.
+// Differences in codes: up to the first surely the same surface (0.25 %, what codes and slopes round away), from the
+// second on surely another (1 %).
+#define PW_TEXEL_W_SAME 6.0f
+#define PW_TEXEL_W_OTHER 24.0f
 // Beyond this (6 %) none of the four texels is the hit's surface; the ring around them is searched.
 #define PW_TEXEL_W_LOST 150.0f
-// Instead of a code: take every texel, whatever its surface.
-#define PW_TEXEL_W_ANY -1.0f
+
+// What is looked for in the texels around a point of the map.
+#define PW_TEXELS_ANY 0    // every texel, whatever its surface
+#define PW_TEXELS_SKY 1    // those that see the sky
+#define PW_TEXELS_POINT 2  // those as far away as the point: nothing is known of its plane
+#define PW_TEXELS_PLANE 3  // those on the plane
+struct TexelSurface {
+  int rule;
+  float w_code;   // of the point
+  pw_vec3 plane;  // as RayAnswer::plane
+};
 
 PW_FUNCTION pw_vec3 decode_texel(pw_uint word) {
   float unit = pw_float_from_bits(((word >> 27) + 103u) << 23);  // 2^(exponent - 24)
@@ -36,9 +47,29 @@ PW_FUNCTION float texel_w_code(ProbeRecord probe, int texel) {
   return float((pw_word(probe.radiance_address, codes + (texel >> 1)) >> (16u * pw_uint(texel & 1))) & 65535u);
 }
 
-// Bilinear look-up in one mip at uv in [-1, 1]^2. w_code: log code of the surface that was hit, 0 for sky, or
-// PW_TEXEL_W_ANY; used in the finest mip only, where texels are small enough to belong to one surface.
-PW_FUNCTION pw_vec3 sample_mip(ProbeRecord probe, int mip, pw_vec2 uv, float w_code, PW_INOUT(pw_uint) reads) {
+PW_FUNCTION float w_code_of(float w) { return PW_TEXEL_W_ONE + PW_TEXEL_W_PER_OCTAVE * log2(w); }
+
+// How far, in codes, the surface that texel number `texel` of the finest mip sees is from the one looked for.
+PW_FUNCTION float texel_off(ProbeRecord probe, TexelSurface surface, int texel, PW_INOUT(pw_uint) reads) {
+  float code = texel_w_code(probe, texel);
+  reads += 1u;
+  float expected = surface.rule == PW_TEXELS_SKY ? 0.0f : surface.w_code;
+  if (surface.rule == PW_TEXELS_PLANE) {
+    int r_log2 = int(probe.r_log2);
+    float step = 2.0f / float(1 << r_log2);
+    float u = (float(texel & ((1 << r_log2) - 1)) + 0.5f) * step - 1.0f;
+    float v = (float(texel >> r_log2) + 0.5f) * step - 1.0f;
+    float z = 1.0f - abs(u) - abs(v);
+    float x = z >= 0.0f ? u : (1.0f - abs(v)) * (u < 0.0f ? -1.0f : 1.0f);
+    float y = z >= 0.0f ? v : (1.0f - abs(u)) * (v < 0.0f ? -1.0f : 1.0f);
+    expected = w_code_of(max(surface.plane.x * x + surface.plane.y * y + surface.plane.z * z, 1e-9f));
+  }
+  return abs(code - expected);
+}
+
+// Bilinear look-up in one mip at uv in [-1, 1]^2. The surface is asked for in the finest mip only, where texels are small
+// enough to belong to one.
+PW_FUNCTION pw_vec3 sample_mip(ProbeRecord probe, int mip, pw_vec2 uv, TexelSurface surface, PW_INOUT(pw_uint) reads) {
   int r_log2 = int(probe.r_log2);
   int r = 1 << (r_log2 - mip);
   int full = 1 << (2 * r_log2), rest = 1 << (2 * (r_log2 - mip));
@@ -51,37 +82,39 @@ PW_FUNCTION pw_vec3 sample_mip(ProbeRecord probe, int mip, pw_vec2 uv, float w_c
   int t01 = folded_texel(i, j + 1, r), t11 = folded_texel(i + 1, j + 1, r);
   pw_vec4 weight = pw_vec4((1.0f - fx) * (1.0f - fy), fx * (1.0f - fy), (1.0f - fx) * fy, fx * fy);
   reads += 4u;
-  if (mip == 0 && w_code >= 0.0f) {
-    pw_vec4 code = pw_vec4(texel_w_code(probe, t00), texel_w_code(probe, t10), texel_w_code(probe, t01), texel_w_code(probe, t11));
-    reads += 4u;
-    float mean = weight.x * code.x + weight.y * code.y + weight.z * code.z + weight.w * code.w;
-    // On one plane w is affine, so the four blend to the hit's own w. Where they do not, an outline runs between them:
-    // keep those of the hit's surface, at least the most similar one.
-    if (abs(mean - w_code) > PW_TEXEL_W_SAME) {
-      pw_vec4 off = pw_vec4(abs(code.x - w_code), abs(code.y - w_code), abs(code.z - w_code), abs(code.w - w_code));
+  if (mip == 0 && surface.rule != PW_TEXELS_ANY) {
+    pw_vec4 off;
+    off.x = texel_off(probe, surface, t00, reads);
+    off.y = texel_off(probe, surface, t10, reads);
+    off.z = texel_off(probe, surface, t01, reads);
+    off.w = texel_off(probe, surface, t11, reads);
+    float farthest = max(max(off.x, off.y), max(off.z, off.w));
+    if (farthest > PW_TEXEL_W_SAME) {
       float closest = min(min(off.x, off.y), min(off.z, off.w));
       if (closest > PW_TEXEL_W_LOST) {
         // A sliver that no centre nearby has seen: the most similar texel of the ring around the four lends its colour.
         int similar = -1;
+        float ring_closest = PW_TEXEL_W_LOST;
         for (int k = 0; k < 16; ++k) {
           int dx = k & 3, dy = k >> 2;
           if ((dx == 1 || dx == 2) && (dy == 1 || dy == 2)) continue;
           int texel = folded_texel(i + dx - 1, j + dy - 1, r);
-          float ring_off = abs(texel_w_code(probe, texel) - w_code);
-          reads += 1u;
-          if (ring_off < closest) {
-            closest = ring_off;
+          float ring_off = texel_off(probe, surface, texel, reads);
+          if (ring_off < ring_closest) {
+            ring_closest = ring_off;
             similar = texel;
           }
         }
-        if (similar >= 0 && closest <= PW_TEXEL_W_LOST) return decode_texel(pw_word(probe.radiance_address, base + similar));
-        closest = min(min(off.x, off.y), min(off.z, off.w));
+        if (similar >= 0) return decode_texel(pw_word(probe.radiance_address, base + similar));
       }
-      float limit = PW_TEXEL_W_OTHER + 2.0f * closest;
-      weight.x = off.x <= limit ? weight.x + 1e-4f : 0.0f;
-      weight.y = off.y <= limit ? weight.y + 1e-4f : 0.0f;
-      weight.z = off.z <= limit ? weight.z + 1e-4f : 0.0f;
-      weight.w = off.w <= limit ? weight.w + 1e-4f : 0.0f;
+      // An outline runs between the four: the hit's surface counts, others fade out. At least the most similar one stays,
+      // and near it the fall is as gentle as the similarity is poor.
+      float slope = 1.0f / (PW_TEXEL_W_OTHER - PW_TEXEL_W_SAME + closest);
+      float end = PW_TEXEL_W_OTHER + 2.0f * closest;
+      weight.x = (weight.x + 1e-4f) * min(max((end - off.x) * slope, 0.0f), 1.0f);
+      weight.y = (weight.y + 1e-4f) * min(max((end - off.y) * slope, 0.0f), 1.0f);
+      weight.z = (weight.z + 1e-4f) * min(max((end - off.z) * slope, 0.0f), 1.0f);
+      weight.w = (weight.w + 1e-4f) * min(max((end - off.w) * slope, 0.0f), 1.0f);
       weight = weight / (weight.x + weight.y + weight.z + weight.w);
     }
   }
@@ -114,11 +147,16 @@ PW_FUNCTION pw_vec3 ray_radiance(GridConstants grid, TraceConstants dials, RayAn
   float mip = min(max(log2(max(ratio, 1e-6f)), 0.0f), float(probe.r_log2));
   int finer = int(mip);
   float blend = mip - float(finer);
-  float w_code = answer.environment ? PW_TEXEL_W_ANY : far ? 0.0f : PW_TEXEL_W_ONE - PW_TEXEL_W_PER_OCTAVE * log2(len1);
+  TexelSurface surface;
+  surface.plane = pw_vec3(answer.plane);
+  bool on_plane = answer.plane.x != real(0) || answer.plane.y != real(0) || answer.plane.z != real(0);
+  surface.rule = answer.environment ? PW_TEXELS_ANY : far ? PW_TEXELS_SKY : on_plane ? PW_TEXELS_PLANE : PW_TEXELS_POINT;
+  surface.w_code = w_code_of(1.0f / len1);
   pw_vec2 uv = pw_vec2(octahedral_uv(x));
-  pw_vec3 radiance = sample_mip(probe, finer, uv, w_code, reads);
+  pw_vec3 radiance = sample_mip(probe, finer, uv, surface, reads);
   if (blend > 0.0f && finer < int(probe.r_log2)) {
-    radiance = radiance * (1.0f - blend) + sample_mip(probe, finer + 1, uv, PW_TEXEL_W_ANY, reads) * blend;
+    surface.rule = PW_TEXELS_ANY;
+    radiance = radiance * (1.0f - blend) + sample_mip(probe, finer + 1, uv, surface, reads) * blend;
   }
   return radiance / dials.radiance_scale;
 }

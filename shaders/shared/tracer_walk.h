@@ -23,6 +23,7 @@ struct OctantSegment {
   real tw0;  // t * w at lambda 0: t = lerp(tw) / lerp(w)
   real dtw;
   pw_ivec2 side;  // signs of x and y: which quadrant of the map
+  bool upper;     // z > 0
 };
 
 struct WalkState {
@@ -31,7 +32,19 @@ struct WalkState {
   real t_safe;  // the ray is known to be free from its start to here
   bool known;   // the current point has been proven to lie above the surface
   pw_uint lookups;
+  // Of a hit: the plane that was met, as the p with dot(plane, p) = 1 relative to the probe; w along any direction is its
+  // product with the direction of unit L1 length. On the way: w at the piece's anchor, and slopes a cell step.
+  real3 plane;
+  real2 plane_at;  // on the way: the anchor, in the cell's unit square
 };
+
+// The piece met, in the world's terms. side: of the quadrant; upper: z > 0; corner: the cell's, quadrant-local.
+PW_FUNCTION real3 plane_of_piece(real3 piece, real2 at, real2 corner, pw_ivec2 side, bool upper, real half_n) {
+  real centre = piece.x - piece.y * (at.x + corner.x) - piece.z * (at.y + corner.y);
+  real along_u = piece.y * half_n, along_v = piece.z * half_n;
+  real pole = upper ? centre : -(centre + along_u + along_v);
+  return real3((centre + along_u) * real(side.x), (centre + along_v) * real(side.y), pole);
+}
 
 PW_FUNCTION real segment_t(OctantSegment s, real lambda) {
   return min((s.tw0 + lambda * s.dtw) / max(s.w0 + lambda * s.dw, real(1e-30)), PW_NEVER);
@@ -201,7 +214,11 @@ PW_FUNCTION bool meet_cut_triangle(pw_uvec2 geometry, int record, bool high, int
       real2 q0 = p0 + (p1 - p0) * from - at, q1 = p0 + (p1 - p0) * to - at;
       real f0 = ray0 - (w + plane_x * q0.x + plane_y * q0.y);
       real f1 = ray1 - (w + plane_x * q1.x + plane_y * q1.y);
-      if (meet_piece(s, t_start, texel, true, ray0, f0, f1, lambda0, lambda1, state)) return true;
+      if (meet_piece(s, t_start, texel, true, ray0, f0, f1, lambda0, lambda1, state)) {
+        state.plane = real3(w, plane_x, plane_y);
+        state.plane_at = at;
+        return true;
+      }
     }
     from = to;
   }
@@ -310,6 +327,7 @@ PW_FUNCTION bool walk_segment(ProbeRecord probe, OctantSegment s, real t_start, 
           if (mask != 0) {
             if (meet_cut_triangle(geometry, record, high, mask, real3(w_corner, w10, w01), s, t_start, texel, l0, r0,
                                   p0, l1, r1, p1, state)) {
+              state.plane = plane_of_piece(state.plane, state.plane_at, corner_uv, s.side, s.upper, real(half_n));
               return true;
             }
           } else if (w_corner <= real(0) && w10 <= real(0) && w01 <= real(0)) {
@@ -320,7 +338,10 @@ PW_FUNCTION bool walk_segment(ProbeRecord probe, OctantSegment s, real t_start, 
             real2 q0 = p0 - from_corner, q1 = p1 - from_corner;
             real f0 = r0 - (w_corner + gu * q0.x + gv * q0.y);
             real f1 = r1 - (w_corner + gu * q1.x + gv * q1.y);
-            if (meet_piece(s, t_start, texel, false, r0, f0, f1, l0, l1, state)) return true;
+            if (meet_piece(s, t_start, texel, false, r0, f0, f1, l0, l1, state)) {
+              state.plane = plane_of_piece(real3(w_corner, gu, gv), from_corner, corner_uv, s.side, s.upper, real(half_n));
+              return true;
+            }
           }
           if (!crosses) break;
           crosses = false;
@@ -396,6 +417,8 @@ PW_FUNCTION WalkState walk_probe(ProbeRecord probe, real3 x, real3 d, real t_sta
   state.t_safe = t_start;
   state.known = false;
   state.lookups = 0u;
+  state.plane = real3(0);
+  state.plane_at = real2(0, 0);
   const real half_n = real(1 << int(probe.n_log2 - 1u));
   const real l_min = real(probe.l_min_m);
 
@@ -469,6 +492,7 @@ PW_FUNCTION WalkState walk_probe(ProbeRecord probe, real3 x, real3 d, real t_sta
         segment.tw0 = t0 * w0;
         segment.dtw = (endless ? w1 : t1 * w1) - segment.tw0;
         segment.side = pw_ivec2(s.x < real(0) ? -1 : 1, s.y < real(0) ? -1 : 1);
+        segment.upper = upper;
         if (walk_segment(probe, segment, t_start, start_level, state)) return state;
       }
       if (endless) break;

@@ -22,6 +22,7 @@ struct BakeArguments {
 void print_report(const BakeOptions& options, const BakeReport& report, bool as_json) {
   if (as_json) {
     const nlohmann::json json = {{"pack", options.pack.string()},
+                                 {"plan", report.plan.string()},
                                  {"rooms", report.rooms},
                                  {"probes", report.probes},
                                  {"levels", report.levels},
@@ -38,11 +39,12 @@ void print_report(const BakeOptions& options, const BakeReport& report, bool as_
   constexpr double kMiB = 1 << 20;
   std::fputs(fmt::format("{}: {} probes in {} rooms, {} level{}\n"
                          "  {:.1f} million texels in {:.0f} s, {:.2f} s per million texels, {:.0f} million rays\n"
-                         "  {:.1f} MiB on disk, {:.1f} MiB on the device, {:.2f} % of cells without a cut\n",
+                         "  {:.1f} MiB on disk, {:.1f} MiB on the device, {:.2f} % of cells without a cut\n"
+                         "  seen from above: {}\n",
                          options.pack.string(), report.probes, report.rooms, report.levels, report.levels == 1 ? "" : "s",
                          static_cast<double>(report.texels) * 1e-6, report.seconds, report.seconds_per_million_texels,
                          static_cast<double>(report.rays) * 1e-6, static_cast<double>(report.bytes_disk) / kMiB,
-                         static_cast<double>(report.bytes_device) / kMiB, 100.0 * report.connected_fraction)
+                         static_cast<double>(report.bytes_device) / kMiB, 100.0 * report.connected_fraction, report.plan.string())
                  .c_str(),
              stdout);
 }
@@ -66,7 +68,8 @@ void add_bake_command(CLI::App& app, CommonOptions& common) {
   command->footer(
       "States the unit and the lights it assumes, estimates time and size, then shows progress. Interrupted (Ctrl-C), it\n"
       "keeps what is finished beside the pack; the same command goes on from there. The same scene and options give the\n"
-      "same bytes, whatever the number of threads.\n\n"
+      "same bytes, whatever the number of threads. NAME.plan.png beside the pack shows floors, rooms,\n"
+      "probes and the tour from above.\n\n"
       "  probewalk bake house.glb -o house.probes\n"
       "  probewalk bake flat.gltf -o flat.probes --scale 0.01 --max-probes 60    a scene in centimetres, small pack");
   auto arguments = std::make_shared<BakeArguments>();

@@ -8,6 +8,7 @@
 #include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,7 @@
 #include "render/view.h"
 #include "shaders/shared/display_transform.h"
 #include "tools/probewalk/commands.h"
+#include "tools/probewalk/named_poses.h"
 #include "tools/probewalk/reference_picture.h"
 #include "tools/probewalk/still.h"
 #include "xr/eyes.h"
@@ -33,6 +35,7 @@ const std::vector<std::string> kAovNames{"radiance", "distance", "lookups", "pro
 struct RenderArguments {
   std::string pack, output;
   std::vector<double> pose;  // x, y, z, yaw, pitch; metres and degrees
+  std::string poses_file;
   std::string size = "1280x720";
   double fov_deg = 70.0;
   bool stereo = false;
@@ -42,9 +45,7 @@ struct RenderArguments {
   CLI::Option* ev_option = nullptr;
   bool reference = false;
   std::string scene;
-  SceneLoadOptions load;
   double scale = 0.0;
-  LightOptions light;
 };
 
 VkExtent2D parse_size(const std::string& text) {
@@ -56,15 +57,6 @@ VkExtent2D parse_size(const std::string& text) {
                                kMaxSide_px));
   }
   return {width, height};
-}
-
-Pose parse_pose(const std::vector<double>& numbers) {
-  for (const double number : numbers) {
-    if (!(std::abs(number) <= PackLimits::kCoordinate_m)) {
-      throw BadUsage(fmt::format("--pose: {} is out of range; write x,y,z in metres, then yaw and pitch in degrees", number));
-    }
-  }
-  return {{numbers[0], numbers[1], numbers[2]}, glm::radians(numbers[3]), glm::radians(numbers[4])};
 }
 
 struct Views {
@@ -146,20 +138,30 @@ class RenderJob {
         pack_(Pack::open(arguments.pack)),
         ev_(arguments.ev_option->count() > 0 ? arguments.ev : pack_.manifest().exposure_ev),
         extent_(parse_size(arguments.size)),
-        views_(make_views(arguments, arguments.pose.empty() ? pack_.manifest().start : parse_pose(arguments.pose), extent_)),
+        poses_(chosen_poses()),
         progress_(make_progress(common)),
-        device_({}, {.device = common.device}) {}
+        device_({}, {.device = common.device}),
+        drawer_(pack_, device_, extent_, arguments.stereo ? 2 : 1, *progress_) {
+    if (arguments.reference) {
+      const std::optional<double> scale = arguments.scale > 0.0 ? std::optional(arguments.scale) : std::nullopt;
+      reference_ = std::make_unique<ReferenceCaster>(arguments.scene, pack_.manifest(), scale, common.threads, *progress_);
+    }
+  }
 
-  nlohmann::json run();
+  // One report a picture.
+  std::vector<nlohmann::json> run();
 
  private:
+  std::vector<NamedPose> chosen_poses() const;
+  nlohmann::json draw(const NamedPose& pose);
   std::vector<ImageRgb8> displayed(const std::vector<ImageRgbF>& images) const;
   void write(const fs::path& file, const std::vector<ImageRgb8>& shown, const std::vector<ImageRgbF>& radiance,
              std::vector<ExrChannel> more = {}) const;
   void write_still(const fs::path& file, const Still& still) const;
-  void compare(const Still& still, nlohmann::json& report);
+  void compare(const fs::path& file, const Views& views, const Still& still, nlohmann::json& report) const;
   void count(const Still& still, nlohmann::json& report) const;
-  int width_px() const { return static_cast<int>(extent_.width * views_.constants.size()); }
+  int view_count() const { return arguments_.stereo ? 2 : 1; }
+  int width_px() const { return static_cast<int>(extent_.width) * view_count(); }
   int height_px() const { return static_cast<int>(extent_.height); }
 
   const RenderArguments& arguments_;
@@ -168,27 +170,47 @@ class RenderJob {
   const Pack pack_;
   const double ev_;
   const VkExtent2D extent_;
-  const Views views_;
+  const std::vector<NamedPose> poses_;
   const std::unique_ptr<Progress> progress_;
   const Device device_;
+  StillDrawer drawer_;
+  std::unique_ptr<ReferenceCaster> reference_;
 };
 
-nlohmann::json RenderJob::run() {
+// Without --poses one, without a name.
+std::vector<NamedPose> RenderJob::chosen_poses() const {
+  if (!arguments_.poses_file.empty()) return read_named_poses(arguments_.poses_file);
+  return {{"", arguments_.pose.empty() ? pack_.manifest().start : pose_of_numbers(arguments_.pose, "--pose")}};
+}
+
+std::vector<nlohmann::json> RenderJob::run() {
+  std::vector<nlohmann::json> reports;
+  for (const NamedPose& pose : poses_) {
+    if (progress_->cancelled()) throw Interrupted("interrupted; finished pictures are kept");
+    reports.push_back(draw(pose));
+  }
+  return reports;
+}
+
+nlohmann::json RenderJob::draw(const NamedPose& pose) {
+  const Views views = make_views(arguments_, pose.pose, extent_);
   FrameSettings settings;
   settings.trace = default_dials(pack_.manifest().radiance_scale);
   settings.exposure = exposure_from_ev(static_cast<float>(ev_));
-  const Still still = draw_still(pack_, device_, views_.head_m, views_.constants, extent_, settings, *progress_);
-  nlohmann::json report = {{"picture", output_.string()},
+  const Still still = drawer_.draw(views.head_m, views.constants, settings);
+  const fs::path file = pose.name.empty() ? output_ : beside(output_, pose.name, output_.extension().string());
+  nlohmann::json report = {{"picture", file.string()},
                            {"device", device_.info().name},
                            {"width", width_px()},
                            {"height", height_px()},
-                           {"views", views_.constants.size()},
+                           {"views", view_count()},
                            {"exposure_ev", ev_}};
+  if (!pose.name.empty()) report["name"] = pose.name;
   count(still, report);
-  if (arguments_.reference) {
-    compare(still, report);
+  if (reference_) {
+    compare(file, views, still, report);
   } else {
-    write_still(output_, still);
+    write_still(file, still);
   }
   return report;
 }
@@ -227,22 +249,19 @@ void RenderJob::write_still(const fs::path& file, const Still& still) const {
   }
 }
 
-// OUT from the triangles; OUT-probes from the probes; OUT-difference, the error as an eye sees it.
-void RenderJob::compare(const Still& still, nlohmann::json& report) {
-  SceneLoadOptions load = arguments_.load;
-  if (arguments_.scale > 0.0) load.scale = arguments_.scale;
-  const auto reference = cast_reference(arguments_.scene, load, arguments_.light, pack_.manifest(), views_.constants,
-                                        static_cast<int>(extent_.width), height_px(), *progress_);
+// FILE from the triangles; FILE-probes from the probes; FILE-difference, the error as an eye sees it.
+void RenderJob::compare(const fs::path& file, const Views& views, const Still& still, nlohmann::json& report) const {
+  const auto reference = reference_->cast(views.constants, static_cast<int>(extent_.width), height_px());
   // Both without dither, which is no error of the probes.
   const auto expected = displayed(reference), actual = displayed(still.radiance_cd_m2);
-  write(output_, expected, reference);
-  write_still(beside(output_, "probes", output_.extension().string()), still);
+  write(file, expected, reference);
+  write_still(beside(file, "probes", file.extension().string()), still);
   std::vector<float> map;
   const float pixels_per_degree = static_cast<float>(extent_.height / arguments_.fov_deg);
   const ImageRgb8 expected_picture = side_by_side(expected), actual_picture = side_by_side(actual);
   const float flip = flip_mean(expected_picture, actual_picture, pixels_per_degree, &map);
   const double psnr = psnr_db(expected_picture, actual_picture);
-  write_png(beside(output_, "difference", ".png"), false_colour(map, width_px(), height_px(), 1.0f));
+  write_png(beside(file, "difference", ".png"), false_colour(map, width_px(), height_px(), 1.0f));
   report["flip_mean"] = flip;
   report["psnr_db"] = std::isfinite(psnr) ? nlohmann::json(psnr) : nlohmann::json();
   report["pixels_per_degree"] = pixels_per_degree;
@@ -275,6 +294,9 @@ void check_usage(const RenderArguments& arguments) {
   if (extension != ".png" && extension != ".exr") {
     throw BadUsage(fmt::format("-o {}: give a file that ends in .png or .exr", arguments.output));
   }
+  if (!arguments.pose.empty() && !arguments.poses_file.empty()) {
+    throw BadUsage("--pose and --poses: give one of them");
+  }
   if (arguments.reference && arguments.scene.empty()) {
     throw BadUsage("--reference casts at the triangles: name the scene that the pack was baked from with --scene FILE");
   }
@@ -283,15 +305,41 @@ void check_usage(const RenderArguments& arguments) {
   }
 }
 
+double mean_of(const std::vector<nlohmann::json>& reports, const char* key) {
+  double sum = 0.0;
+  for (const nlohmann::json& report : reports) sum += report[key].get<double>();
+  return sum / static_cast<double>(reports.size());
+}
+
+std::string psnr_text(const nlohmann::json& psnr) {
+  return psnr.is_null() ? "infinite" : fmt::format("{:.2f}", psnr.get<double>());
+}
+
+// A line a picture, and what they have in common.
+void print_table(const std::vector<nlohmann::json>& reports) {
+  fmt::print("{:<16} {:>8} {:>9} {:>9} {:>9} {:>8}\n", "view", "FLIP", "PSNR dB", "unknown", "look-ups", "p99");
+  for (const nlohmann::json& r : reports) {
+    fmt::print("{:<16} {:>8.4f} {:>9} {:>7.2f} % {:>9.1f} {:>8}\n", r["name"].get<std::string>(),
+               r["flip_mean"].get<double>(), psnr_text(r["psnr_db"]), 100.0 * r["unknown_fraction"].get<double>(),
+               r["lookups_mean"].get<double>(), r["lookups_p99"].get<unsigned>());
+  }
+  fmt::print("{:<16} {:>8.4f} {:>9} {:>7.2f} % {:>9.1f}\n", "mean", mean_of(reports, "flip_mean"), "",
+             100.0 * mean_of(reports, "unknown_fraction"), mean_of(reports, "lookups_mean"));
+}
+
 void run_render(const RenderArguments& arguments, const CommonOptions& common) {
   check_usage(arguments);
-  const nlohmann::json report = RenderJob(arguments, common).run();
+  const std::vector<nlohmann::json> reports = RenderJob(arguments, common).run();
+  const bool is_list = !arguments.poses_file.empty();
   if (common.json) {
-    std::puts(report.dump(2).c_str());
+    std::puts((is_list ? nlohmann::json{{"pictures", reports}} : reports.front()).dump(2).c_str());
+  } else if (arguments.reference && is_list) {
+    fmt::print("at {:.1f} pixels per degree\n", reports.front()["pixels_per_degree"].get<double>());
+    print_table(reports);
   } else if (arguments.reference) {
+    const nlohmann::json& report = reports.front();
     fmt::print("{}: FLIP {:.4f} at {:.1f} pixels per degree, PSNR {} dB\n", arguments.output,
-               report["flip_mean"].get<double>(), report["pixels_per_degree"].get<double>(),
-               report["psnr_db"].is_null() ? "infinite" : fmt::format("{:.2f}", report["psnr_db"].get<double>()));
+               report["flip_mean"].get<double>(), report["pixels_per_degree"].get<double>(), psnr_text(report["psnr_db"]));
   }
 }
 
@@ -303,15 +351,19 @@ void add_render_command(CLI::App& app, CommonOptions& common) {
       "A PNG is what the display would get (exposure, tone curve, sRGB); an EXR is linear radiance in cd/m^2. With --aov a\n"
       "PNG gets false-colour pictures beside it (OUT-distance.png, ...), an EXR gets channels. With --reference, OUT is\n"
       "cast at the triangles, OUT-probes is the same picture from the probes, OUT-difference.png the error as an eye sees\n"
-      "it (FLIP), and FLIP and PSNR are printed.\n\n"
+      "it (FLIP), and FLIP and PSNR are printed. With --poses there is a picture a line of the file, OUT-NAME, and with\n"
+      "--reference a table of them; the scene's light is built once for all.\n\n"
       "  probewalk render house.probes -o still.png --pose 1,1.6,2,30,0 --stereo\n"
-      "  probewalk render house.probes -o still.png --reference --scene house.glb");
+      "  probewalk render house.probes -o still.png --reference --scene house.glb\n"
+      "  probewalk render house.probes -o still.png --poses views.txt");
   auto arguments = std::make_shared<RenderArguments>();
   command->add_option("pack", arguments->pack, "The pack (a folder NAME.probes)")->required();
   command->add_option("-o,--output", arguments->output, "The picture: .png or .exr")->required();
   command->add_option("--pose", arguments->pose,
                       "Head: x,y,z in metres, yaw (0 looks along -z, positive to the left) and pitch (positive up) in "
                       "degrees (default: the pack's start)")->delimiter(',')->expected(5);
+  command->add_option("--poses", arguments->poses_file,
+                      "File with a picture a line: NAME x,y,z,yaw,pitch; the picture is OUT-NAME");
   command->add_option("--size", arguments->size, "Pixels of one eye, WxH")->capture_default_str();
   command->add_option("--fov", arguments->fov_deg, "Vertical field of view in degrees")
       ->check(CLI::Range(1.0, 170.0))->capture_default_str();
@@ -323,19 +375,10 @@ void add_render_command(CLI::App& app, CommonOptions& common) {
       ->check(CLI::Range(-30.0, 30.0));
   command->add_flag("--reference", arguments->reference, "Cast the picture at the triangles, and compare");
   command->add_option("--scene", arguments->scene, "The scene that the pack was baked from, for --reference");
-  command->add_option("--scale", arguments->scale, "As given to bake, for --reference (default: the pack's)")
+  command->add_option("--scale", arguments->scale, "Metres per unit of the scene's file, for --reference (default: as the pack was baked)")
       ->check(CLI::PositiveNumber);
-  command->add_flag("--recentre", arguments->load.recentre, "As given to bake, for --reference");
-  command->add_option("--samples", arguments->light.samples, "As given to bake, for --reference")
-      ->check(CLI::Range(8, 65536))->capture_default_str();
-  command->add_option("--bounces", arguments->light.bounces, "As given to bake, for --reference")
-      ->check(CLI::Range(0, 64))->capture_default_str();
-  command->add_option("--seed", arguments->light.seed, "As given to bake, for --reference")->capture_default_str();
   add_common_options(*command, common);
-  command->callback([arguments, &common] {
-    arguments->light.threads = common.threads;
-    run_render(*arguments, common);
-  });
+  command->callback([arguments, &common] { run_render(*arguments, common); });
 }
 
 }  // namespace probewalk

@@ -4,41 +4,63 @@
 #include <tbb/parallel_for.h>
 
 #include "content/error.h"
-#include "content/scene/ray_scene.h"
 #include "shaders/shared/view_ray.h"
 
 namespace probewalk {
+namespace {
 
-std::vector<ImageRgbF> cast_reference(const std::filesystem::path& scene_file, const SceneLoadOptions& load,
-                                      const LightOptions& light_options, const Manifest& manifest,
-                                      const std::vector<ViewConstants>& views, int width_px, int height_px,
-                                      Progress& progress) {
-  SceneLoadOptions options = load;
-  if (!options.scale) options.scale = manifest.scale;
-  const Scene scene = load_scene(scene_file, options);
+Scene load_as_baked(const std::filesystem::path& file, const Manifest& manifest, std::optional<double> scale,
+                    Progress& progress) {
+  SceneLoadOptions options;
+  options.scale = scale.value_or(manifest.scale);
+  options.recentre = manifest.light && manifest.light->recentred;
+  Scene scene = load_scene(file, options);
   if (scene.content_hash != manifest.scene_hash) {
     progress.note(fmt::format("{} is not the scene that the pack was baked from, or was loaded otherwise: the pictures "
-                              "may differ for that reason", scene_file.string()));
+                              "may differ for that reason", file.string()));
   }
-  const RayScene rays(scene);
-  const LightField light(scene, rays, light_options, progress);
+  if (!manifest.light) progress.note("the pack does not say how its light was sampled: the bake's defaults are taken");
+  return scene;
+}
 
-  progress.begin("reference", std::uint64_t{views.size()} * static_cast<std::uint64_t>(height_px), "rows");
+LightOptions light_as_baked(const Manifest& manifest, int threads) {
+  LightOptions options;
+  options.threads = threads;
+  if (!manifest.light) return options;
+  options.samples = manifest.light->samples;
+  options.bounces = manifest.light->bounces;
+  options.cache_spacing_m = manifest.light->cache_spacing_m;
+  options.seed = manifest.light->seed;
+  return options;
+}
+
+}  // namespace
+
+ReferenceCaster::ReferenceCaster(const std::filesystem::path& scene_file, const Manifest& manifest,
+                                 std::optional<double> scale, int threads, Progress& progress)
+    : progress_(progress),
+      scene_(load_as_baked(scene_file, manifest, scale, progress)),
+      rays_(scene_),
+      light_(scene_, rays_, light_as_baked(manifest, threads), progress) {}
+
+std::vector<ImageRgbF> ReferenceCaster::cast(const std::vector<ViewConstants>& views, int width_px,
+                                             int height_px) const {
+  progress_.begin("reference", std::uint64_t{views.size()} * static_cast<std::uint64_t>(height_px), "rows");
   std::vector<ImageRgbF> pictures;
   for (const ViewConstants& view : views) {
     ImageRgbF picture{width_px, height_px, {}};
     picture.rgb.resize(static_cast<std::size_t>(width_px) * static_cast<std::size_t>(height_px));
     const glm::vec3 origin_m = view.origin_hi_m + view.origin_lo_m;
     tbb::parallel_for(0, height_px, [&](int y) {
-      if (progress.cancelled()) return;
+      if (progress_.cancelled()) return;
       for (int x = 0; x < width_px; ++x) {
         const glm::vec3 direction = view_ray(view, {x, y}, {width_px, height_px});
         picture.rgb[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_px) + static_cast<std::size_t>(x)] =
-            light.along(origin_m, direction, view.pixel_angle_rad);
+            light_.along(origin_m, direction, view.pixel_angle_rad);
       }
-      progress.advance(1);
+      progress_.advance(1);
     });
-    if (progress.cancelled()) throw Interrupted("interrupted while casting the reference; nothing was written");
+    if (progress_.cancelled()) throw Interrupted("interrupted while casting the reference; finished pictures are kept");
     pictures.push_back(std::move(picture));
   }
   return pictures;

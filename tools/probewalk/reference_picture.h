@@ -9,16 +9,27 @@
 #include "content/image/image.h"
 #include "content/pack/manifest.h"
 #include "content/progress.h"
+#include "content/scene/ray_scene.h"
 #include "content/scene/scene.h"
 #include "shaders/shared/probe_layout.h"
 
 namespace probewalk {
 
-// One picture a view, in cd/m^2, rays through the pixels' centres. Loads the scene at the pack's scale and builds the
-// light (long). Notes when the scene is not the one that was baked. Throws BadInput, Interrupted.
-std::vector<ImageRgbF> cast_reference(const std::filesystem::path& scene_file, const SceneLoadOptions& load,
-                                      const LightOptions& light, const Manifest& manifest,
-                                      const std::vector<ViewConstants>& views, int width_px, int height_px,
-                                      Progress& progress);
+class ReferenceCaster {
+ public:
+  // Loads the scene as the pack's bake did (`scale` overrides) and builds its light (long, once for all pictures). Notes
+  // when the scene is not the one that was baked. `progress` must outlive the caster. Throws BadInput, Interrupted.
+  ReferenceCaster(const std::filesystem::path& scene_file, const Manifest& manifest, std::optional<double> scale,
+                  int threads, Progress& progress);
+
+  // One picture a view, in cd/m^2, rays through the pixels' centres. Throws Interrupted.
+  std::vector<ImageRgbF> cast(const std::vector<ViewConstants>& views, int width_px, int height_px) const;
+
+ private:
+  Progress& progress_;
+  const Scene scene_;
+  const RayScene rays_;
+  const LightField light_;
+};
 
 }  // namespace probewalk

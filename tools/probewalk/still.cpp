@@ -13,52 +13,76 @@ namespace {
 constexpr auto kPatience = std::chrono::minutes(5);
 constexpr VkFormat kFormat = VK_FORMAT_R8G8B8A8_SRGB;
 
-void load_rooms(const Pack& pack, ProbeStore& store, glm::dvec3 head_m, Progress& progress) {
-  const FolderSource source(pack.path());
-  RoomStreamer streamer(
-      pack.manifest(), source,
-      [&](LoadedLevel&& loaded) {
-        store.upload({loaded.room, loaded.level, loaded.first_probe, std::move(loaded.probes)});
-      },
-      [&](LevelKey key) { store.evict(key.room, key.level); });
-  const bool is_settled = streamer.settle({.head_m = head_m}, kPatience);
-  for (const std::string& error : streamer.take_errors()) progress.note(error);
-  if (!is_settled) throw BadInput(pack.path().string() + ": the rooms did not load within five minutes");
-  store.settle();
-}
-
 }  // namespace
 
-Still draw_still(const Pack& pack, const Device& device, glm::dvec3 head_m, const std::vector<ViewConstants>& views,
-                 VkExtent2D extent_px, const FrameSettings& settings, Progress& progress) {
-  const auto view_count = static_cast<std::uint32_t>(views.size());
-  ProbeStore store(device, pack.manifest().grid,
-                   static_cast<std::uint32_t>(pack.manifest().probe_positions_m.size()), {.frame_slots = kFrameSlots});
-  load_rooms(pack, store, head_m, progress);
+struct StillDrawer::Impl {
+  Impl(const Pack& pack_in, const Device& device_in, VkExtent2D extent_px, std::uint32_t view_count, Progress& progress_in)
+      : pack(pack_in),
+        device(device_in),
+        progress(progress_in),
+        extent(extent_px),
+        views(view_count),
+        store(device, pack.manifest().grid, static_cast<std::uint32_t>(pack.manifest().probe_positions_m.size()),
+              {.frame_slots = kFrameSlots}),
+        picture(device, {kFormat, extent, views, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT}),
+        renderer(device, store, {{extent, views, true}, kFormat}),
+        source(pack.path()),
+        streamer(
+            pack.manifest(), source,
+            [this](LoadedLevel&& loaded) {
+              store.upload({loaded.room, loaded.level, loaded.first_probe, std::move(loaded.probes)});
+            },
+            [this](LevelKey key) { store.evict(key.room, key.level); }) {}
 
-  const Image picture(device, {kFormat, extent_px, view_count,
-                               VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT});
+  void load_rooms(glm::dvec3 head_m) {
+    const bool is_settled = streamer.settle({.head_m = head_m}, kPatience);
+    for (const std::string& error : streamer.take_errors()) progress.note(error);
+    if (!is_settled) throw BadInput(pack.path().string() + ": the rooms did not load within five minutes");
+    store.settle();
+  }
+
+  const Pack& pack;
+  const Device& device;
+  Progress& progress;
+  const VkExtent2D extent;
+  const std::uint32_t views;
+  ProbeStore store;
+  Image picture;
+  FrameRenderer renderer;
+  FolderSource source;
+  RoomStreamer streamer;  // last: its loaders end before what they load into
+};
+
+StillDrawer::StillDrawer(const Pack& pack, const Device& device, VkExtent2D extent_px, std::uint32_t view_count,
+                         Progress& progress)
+    : impl_(std::make_unique<Impl>(pack, device, extent_px, view_count, progress)) {}
+
+StillDrawer::~StillDrawer() = default;
+
+Still StillDrawer::draw(glm::dvec3 head_m, const std::vector<ViewConstants>& views, const FrameSettings& settings) {
+  Impl& own = *impl_;
+  own.load_rooms(head_m);
+
   FrameTarget target;
-  target.image = picture.handle();
+  target.image = own.picture.handle();
   target.format = kFormat;
-  target.extent = extent_px;
-  target.layers = view_count;
+  target.extent = own.extent;
+  target.layers = own.views;
   target.final_layout = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
-  FrameRenderer renderer(device, store, {{extent_px, view_count, true}, kFormat});
-  renderer.record(target);
-  renderer.write(views, settings);
-  renderer.submit();
-  renderer.wait();
+  own.renderer.record(target);
+  own.renderer.write(views, settings);
+  own.renderer.submit();
+  own.renderer.wait();
 
   Still still;
-  still.shown = read_pictures(device, picture.handle(), target.final_layout, kFormat, extent_px, view_count);
-  still.radiance_cd_m2 = read_radiance(device, renderer.tracer().radiance());
+  still.shown = read_pictures(own.device, own.picture.handle(), target.final_layout, kFormat, own.extent, own.views);
+  still.radiance_cd_m2 = read_radiance(own.device, own.renderer.tracer().radiance());
   for (ImageRgbF& image : still.radiance_cd_m2) {
     for (glm::vec3& color : image.rgb) color /= settings.trace.radiance_scale;
   }
-  still.distance_m = read_floats(device, renderer.tracer().distance());
-  still.counts = read_uints(device, renderer.tracer().aov());
-  still.times = renderer.take_times().value();
+  still.distance_m = read_floats(own.device, own.renderer.tracer().distance());
+  still.counts = read_uints(own.device, own.renderer.tracer().aov());
+  still.times = own.renderer.take_times().value();
   return still;
 }
 

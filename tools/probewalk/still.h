@@ -1,7 +1,8 @@
-// One picture of a pack from fixed eyes, drawn by the device.
+// Pictures of a pack from fixed eyes, drawn by the device.
 #pragma once
 
 #include <glm/glm.hpp>
+#include <memory>
 #include <vector>
 
 #include "content/image/image.h"
@@ -21,9 +22,22 @@ struct Still {
   FrameGpuTimes times;
 };
 
-// Waits for the rooms that a walker at `head_m` wants, then draws. Notes chunks that cannot be read. Throws BadInput
-// when the rooms do not arrive.
-Still draw_still(const Pack& pack, const Device& device, glm::dvec3 head_m, const std::vector<ViewConstants>& views,
-                 VkExtent2D extent_px, const FrameSettings& settings, Progress& progress);
+// Keeps the pack's rooms on the device from one picture to the next.
+class StillDrawer {
+ public:
+  // All must outlive the drawer. view_count eyes a picture.
+  StillDrawer(const Pack& pack, const Device& device, VkExtent2D extent_px, std::uint32_t view_count, Progress& progress);
+  ~StillDrawer();
+  StillDrawer(const StillDrawer&) = delete;
+  StillDrawer& operator=(const StillDrawer&) = delete;
+
+  // Waits for the rooms that a walker at `head_m` wants, then draws. Notes chunks that cannot be read. Throws BadInput
+  // when the rooms do not arrive.
+  Still draw(glm::dvec3 head_m, const std::vector<ViewConstants>& views, const FrameSettings& settings);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
 
 }  // namespace probewalk
