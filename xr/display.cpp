@@ -1,10 +1,13 @@
 #include "xr/display.h"
 
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "content/error.h"
+#include "xr/mirror.h"
 #include "xr/offscreen_source.h"
 #include "xr/openxr_instance.h"
 #include "xr/openxr_source.h"
@@ -15,23 +18,53 @@ namespace probewalk {
 namespace {
 
 constexpr VkExtent2D kDefaultEyeSize{640, 720};
+constexpr VkExtent2D kMirrorSize{640, 640};  // pixels of one eye in the mirror's window, at first
 
 VkExtent2D eye_size_or_default(const DisplayOptions& options) {
   return options.eye_size.width > 0 ? options.eye_size : kDefaultEyeSize;
 }
 
-Display open_headset(const DisplayOptions& options, const FloorMap& floor, const Pose& start) {
-  Display display;
-  display.runtime = std::make_unique<OpenXrInstance>();
+// The runtime's hooks, with what a mirror needs besides.
+DeviceHooks with_window(DeviceHooks hooks, const DeviceHooks& window) {
+  const auto append = [](std::vector<std::string>& to, const std::vector<std::string>& more) {
+    to.insert(to.end(), more.begin(), more.end());
+  };
+  append(hooks.instance_extensions, window.instance_extensions);
+  append(hooks.device_extensions, window.device_extensions);
+  hooks.can_present = window.can_present;
+  return hooks;
+}
+
+// Device, source and mirror for a runtime; without a window also where a desktop or a device cannot mirror.
+void open_mirrored(Display& display, const DisplayOptions& options, const FloorMap& floor, const Pose& start) {
+  const HeadsetOptions headset{options.eye_size, options.seated};
+  const ShownEyes shown = options.window_eyes.value_or(ShownEyes::kLeft);
+  if (shown != ShownEyes::kNone) {
+    try {
+      const VkExtent2D size = window_size({options.eye_size.width > 0 ? options.eye_size : kMirrorSize, shown, options.eyes});
+      display.window = std::make_unique<Window>("Probewalk: mirror", size);
+      display.device = std::make_unique<Device>(with_window(display.runtime->device_hooks(), display.window->device_hooks()),
+                                                options.device);
+      display.source = std::make_unique<OpenXrSource>(*display.runtime, *display.device, floor, start, headset);
+      const FrameSource& source = *display.source;
+      display.mirror = std::make_unique<Mirror>(*display.window, *display.device, source.view_extent(),
+                                                source.view_count(), source.color_format(), shown);
+      return;
+    } catch (const NoDevice& error) {
+      spdlog::info("no mirror: {}", error.what());
+      display.source.reset();
+      display.device.reset();
+      display.window.reset();
+    }
+  }
   display.device = std::make_unique<Device>(display.runtime->device_hooks(), options.device);
-  display.source = std::make_unique<OpenXrSource>(*display.runtime, *display.device, floor, start,
-                                                  HeadsetOptions{options.eye_size, options.seated});
-  display.runtime_name = display.runtime->description();
-  return display;
+  display.source = std::make_unique<OpenXrSource>(*display.runtime, *display.device, floor, start, headset);
 }
 
 Display open_window(const DisplayOptions& options, const FloorMap& floor, const Pose& start) {
-  const WindowOptions window{eye_size_or_default(options), options.window_eyes, options.eyes};
+  ShownEyes shown = options.window_eyes.value_or(ShownEyes::kBoth);
+  if (shown == ShownEyes::kNone) shown = ShownEyes::kBoth;  // without a mirror, not without a picture
+  const WindowOptions window{eye_size_or_default(options), shown, options.eyes};
   Display display;
   display.window = std::make_unique<Window>("Probewalk", window_size(window));
   display.device = std::make_unique<Device>(display.window->device_hooks(), options.device);
@@ -39,8 +72,9 @@ Display open_window(const DisplayOptions& options, const FloorMap& floor, const 
   return display;
 }
 
-Display open_offscreen(const DisplayOptions& options, const Pose& start) {
+Display open_offscreen(const DisplayOptions& options, const Pose& start, bool in_real_time = false) {
   OffscreenOptions offscreen;
+  offscreen.in_real_time = in_real_time;
   offscreen.eye_size = eye_size_or_default(options);
   offscreen.eyes = options.eyes;
   Display display;
@@ -55,10 +89,29 @@ Display::Display() = default;
 Display::Display(Display&&) noexcept = default;
 Display::~Display() = default;
 
+Display open_headset(const DisplayOptions& options, const FloorMap& floor, const Pose& start,
+                     std::unique_ptr<OpenXrInstance> runtime) {
+  Display display;
+  display.runtime = std::move(runtime);
+  open_mirrored(display, options, floor, start);
+  display.runtime_name = display.runtime->description();
+  return display;
+}
+
+Display open_without_headset(const DisplayOptions& options, const FloorMap& floor, const Pose& start) {
+  try {
+    return open_window(options, floor, start);
+  } catch (const NoDevice& error) {
+    Display display = open_offscreen(options, start, true);
+    display.reason = error.what();
+    return display;
+  }
+}
+
 Display open_display(const DisplayOptions& options, const FloorMap& floor, const Pose& start) {
   switch (options.choice) {
     case DisplayChoice::kHeadset:
-      return open_headset(options, floor, start);
+      return open_headset(options, floor, start, std::make_unique<OpenXrInstance>());
     case DisplayChoice::kWindow:
       return open_window(options, floor, start);
     case DisplayChoice::kOffscreen:
@@ -68,7 +121,7 @@ Display open_display(const DisplayOptions& options, const FloorMap& floor, const
   }
   std::string headset_silent;
   try {
-    Display display = open_headset(options, floor, start);
+    Display display = open_headset(options, floor, start, std::make_unique<OpenXrInstance>());
     display.reason = "a headset answers";
     return display;
   } catch (const NoDevice& error) {

@@ -1,7 +1,9 @@
 // Which display a walk uses: the first that answers, or the one that was asked for.
 #pragma once
 
+#include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "content/scene/space.h"
@@ -12,6 +14,7 @@
 
 namespace probewalk {
 
+class Mirror;
 class OpenXrInstance;
 class Window;
 
@@ -20,7 +23,8 @@ enum class DisplayChoice { kAuto, kHeadset, kWindow, kOffscreen };
 struct DisplayOptions {
   DisplayChoice choice = DisplayChoice::kAuto;
   VkExtent2D eye_size{0, 0};  // 0 = the display's own choice
-  ShownEyes window_eyes = ShownEyes::kBoth;
+  // Of the window, and of the mirror beside a headset. Empty = both in a window of its own, the left one in a mirror.
+  std::optional<ShownEyes> window_eyes;
   bool seated = false;
   EyeGeometry eyes;  // window and offscreen; a headset has its own
   DeviceOptions device;
@@ -29,9 +33,10 @@ struct DisplayOptions {
 // A display with the device that draws for it. Members are destroyed from the last to the first, as Vulkan wants.
 struct Display {
   std::unique_ptr<OpenXrInstance> runtime;  // headset only
-  std::unique_ptr<Window> window;           // window only
+  std::unique_ptr<Window> window;           // window, or the mirror's
   std::unique_ptr<Device> device;
   std::unique_ptr<FrameSource> source;
+  std::unique_ptr<Mirror> mirror;  // headset with a desktop, unless told not to
   std::string runtime_name;  // of the OpenXR runtime and headset; empty where none takes part
   std::string reason;        // why this one: a sentence for the log
 
@@ -39,9 +44,17 @@ struct Display {
   Display(Display&&) noexcept;
   ~Display();
 };
+using DisplayOpener = std::function<Display(const DisplayOptions&, const FloorMap& floor, const Pose& start)>;
 
 // Throws NoDevice when the display asked for does not answer, or with kAuto when not even offscreen works. `floor`
 // outlives the display.
 Display open_display(const DisplayOptions& options, const FloorMap& floor, const Pose& start);
+
+// Where a walk goes on that has lost its headset: a window, else offscreen at the pace of a display. Never throws for
+// want of a window.
+Display open_without_headset(const DisplayOptions& options, const FloorMap& floor, const Pose& start);
+// The headset of a runtime that has answered. Throws NoDevice.
+Display open_headset(const DisplayOptions& options, const FloorMap& floor, const Pose& start,
+                     std::unique_ptr<OpenXrInstance> runtime);
 
 }  // namespace probewalk

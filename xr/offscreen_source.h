@@ -4,6 +4,7 @@
 #include "content/scene/space.h"
 #include "xr/eye_images.h"
 #include "xr/eyes.h"
+#include "xr/frame_pacer.h"
 #include "xr/frame_source.h"
 
 namespace probewalk {
@@ -13,11 +14,12 @@ inline constexpr std::int64_t kDefaultPeriod_ns = 13'888'889;  // 72 Hz
 struct OffscreenOptions {
   VkExtent2D eye_size{640, 720};
   std::int64_t period_ns = kDefaultPeriod_ns;
+  bool in_real_time = false;  // frames begin when a display of this period would let them
   EyeGeometry eyes;
 };
 
 // Frame i (from 0) has the display time start + i * period, however long frames take: it has no deadlines, and wait
-// does not block.
+// does not block. In real time it stands in for a display that has gone: paced and late like one.
 class OffscreenSource final : public FrameSource {
  public:
   // The head stays at `head`; a walk that replays a path moves it.
@@ -39,6 +41,7 @@ class OffscreenSource final : public FrameSource {
   Pose head_;
   OffscreenOptions options_;
   EyeImages images_;
+  FramePacer pacer_;
   std::int64_t start_ns_;
   std::int64_t frame_ = 0;
 };

@@ -1,43 +1,30 @@
 #include "xr/walk.h"
 
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
+#include <exception>
 #include <memory>
-#include <thread>
+#include <utility>
 
 #include "content/error.h"
-#include "content/probe/probe_set.h"
-#include "render/frame_renderer.h"
-#include "render/view.h"
-#include "shaders/shared/display_transform.h"
-#include "xr/frame_book.h"
+#include "xr/headset_watch.h"
 #include "xr/latency/clock.h"
 #include "xr/latency/run_files.h"
-#include "xr/locomotion.h"
+#include "xr/mirror.h"
 #include "xr/offscreen_source.h"
+#include "xr/openxr_instance.h"
 #include "xr/path.h"
-#include "xr/picture_saver.h"
-#include "xr/walk_rooms.h"
-#include "xr/walk_view.h"
+#include "xr/walk_books.h"
+#include "xr/walk_leg.h"
 
 namespace probewalk {
 namespace {
 
 constexpr std::uint64_t kTourFrames = 600;   // of an offscreen walk that is not told how many
 constexpr std::uint64_t kWarmupFrames = 30;  // pipelines, caches and rooms come in; at most a tenth of the run
-constexpr auto kIdleSleep = std::chrono::milliseconds(5);
-
-template <typename Work>
-Interval timed(const Work& work) {
-  Interval interval;
-  interval.begin = now_ns();
-  work();
-  interval.end = now_ns();
-  return interval;
-}
 
 // How many frames the walk has, where that is known beforehand.
 std::optional<std::uint64_t> frame_limit(const WalkOptions& options, bool offscreen, const std::optional<Path>& path) {
@@ -55,6 +42,7 @@ WalkView view_of(const Manifest& manifest, bool offscreen, std::optional<Path> p
   return {};
 }
 
+// What the report says of the display that the walk began on.
 RunInfo run_info(const WalkOptions& options, const Display& display) {
   RunInfo info;
   info.command = options.command;
@@ -73,229 +61,152 @@ RunInfo run_info(const WalkOptions& options, const Display& display) {
   return info;
 }
 
+// A walk over one display after the other: a headset that goes away is replaced, one that comes back is taken.
 class Walk {
  public:
-  Walk(const WalkOptions& options, const Pack& pack, const Display& display, WalkView view,
-       std::optional<std::uint64_t> frames, Progress& progress)
-      : options_(options),
-        display_(display),
-        source_(*display.source),
-        view_(std::move(view)),
-        frames_(frames),
-        progress_(progress),
-        settle_(options.settle.value_or(source_.kind() == "offscreen")),
-        rooms_(pack, *display.device, {options.budget_bytes, options.loader_threads}, progress),
-        renderer_(*display.device, rooms_.store(),
-                  {.tracer = {.extent_px = source_.view_extent(), .views = source_.view_count()},
-                   .target_format = source_.color_format()}),
-        ledger_({.warmup_frames = std::min(kWarmupFrames, frames.value_or(10 * kWarmupFrames) / 10),
-                 .has_deadlines = source_.kind() != "offscreen"}),
-        book_(ledger_) {
-    settings_.trace = default_dials(pack.manifest().radiance_scale);
-    settings_.exposure = exposure_from_ev(static_cast<float>(options.exposure_ev.value_or(pack.manifest().exposure_ev)));
-    if (options.record) recorder_ = std::make_unique<PathWriter>(*options.record);
-  }
+  Walk(const WalkOptions& options, const Pack& pack, Progress& progress)
+      : options_(options), pack_(pack), progress_(progress) {}
 
-  WalkResult::End run();
-  // Waits for the frames in flight and closes the books.
-  Ledger finish();
-  StreamingFacts streaming() const { return rooms_.facts(); }
-  std::uint64_t pictures() const { return pictures_; }
+  WalkResult run();
 
  private:
-  // False when the walk's own end has come: frames, seconds or path are over.
-  bool frame();
-  // Draws into the source's next image; the views that were drawn, and the frame's number with the renderer.
-  std::vector<ViewPose> draw(const FrameTiming& timing, FrameRecord& record, std::uint64_t& drawn);
-  void write(const std::vector<ViewPose>& views);
-  void save_pictures(const FrameTarget& target);
-  void take_late_answers();
-  bool is_over(const FrameTiming& timing);
+  void begin(std::optional<Path> path);
+  LegEnd walk_leg();
+  // False when there is nowhere to go on.
+  bool go_on_without_headset();
+  void go_back_to_headset();
+  void leave_display(const std::string& reason);
+  void note_display() const;
+  Pose here() const;
+  void save();
 
   const WalkOptions& options_;
-  const Display& display_;
-  FrameSource& source_;
-  WalkView view_;
-  std::optional<std::uint64_t> frames_;
+  const Pack& pack_;
   Progress& progress_;
-  bool settle_;
-  WalkRooms rooms_;
-  FrameRenderer renderer_;
-  FrameSettings settings_;
-  WallFade wall_fade_;
-  Ledger ledger_;
-  FrameBook book_;
-  std::unique_ptr<PathWriter> recorder_;
-  std::uint64_t frame_ = 0;  // index of the frame under way
-  std::optional<std::int64_t> first_display_ns_;
-  std::uint64_t pictures_ = 0;
+  WalkBooks books_;
+  std::unique_ptr<HeadsetWatch> watch_;
+  std::unique_ptr<Display> display_;
 };
 
-WalkResult::End Walk::run() {
-  for (;;) {
-    if (progress_.cancelled()) return WalkResult::End::kInterrupted;
-    if (frames_ && frame_ >= *frames_) return WalkResult::End::kDone;
-    switch (source_.poll()) {
-      case SourceState::kIdle:
-        std::this_thread::sleep_for(kIdleSleep);
+WalkResult Walk::run() {
+  std::optional<Path> path;
+  if (options_.path) path = read_path(*options_.path);
+  begin(std::move(path));
+  WalkResult result;
+  try {
+    LegEnd end = walk_leg();
+    for (;; end = walk_leg()) {
+      if (end == LegEnd::kHeadsetBack) {
+        go_back_to_headset();
+      } else if (end != LegEnd::kLost || display_->source->kind() != "headset" || !go_on_without_headset()) {
         break;
-      case SourceState::kRunning:
-        if (!frame()) return WalkResult::End::kDone;
-        break;
-      case SourceState::kLost:
-        return WalkResult::End::kLost;
-      case SourceState::kFinished:
-        return WalkResult::End::kClosed;
+      }
     }
+    result.end = end == LegEnd::kDone          ? WalkResult::End::kDone
+                 : end == LegEnd::kClosed      ? WalkResult::End::kClosed
+                 : end == LegEnd::kInterrupted ? WalkResult::End::kInterrupted
+                                               : WalkResult::End::kLost;
+  } catch (...) {
+    // A device that is lost, a full disk: what was walked is kept, then the error goes its way.
+    try {
+      save();
+    } catch (const std::exception& error) {
+      spdlog::error("the walk so far could not be saved: {}", error.what());
+    }
+    throw;
   }
+  save();
+  result.ledger = std::move(books_.ledger);
+  result.info = std::move(books_.info);
+  result.pictures = books_.pictures;
+  result.validation_messages = books_.validation_messages;
+  return result;
 }
 
-bool Walk::is_over(const FrameTiming& timing) {
-  if (!first_display_ns_) first_display_ns_ = timing.predicted_display_ns;
-  const double seconds = static_cast<double>(timing.predicted_display_ns - *first_display_ns_) * 1e-9;
-  if (options_.seconds && seconds > *options_.seconds) return true;
-  return !frames_ && !options_.seconds && view_.is_over(timing.predicted_display_ns);
+void Walk::begin(std::optional<Path> path) {
+  const Manifest& manifest = pack_.manifest();
+  const DisplayOpener open = options_.open_display ? options_.open_display : DisplayOpener(open_display);
+  display_ = std::make_unique<Display>(open(options_.display, manifest.floor, manifest.start));
+  note_display();
+  const bool offscreen = display_->source->kind() == "offscreen";
+  books_.frames = frame_limit(options_, offscreen, path);
+  books_.view = view_of(manifest, offscreen, std::move(path), books_.frames);
+  books_.ledger = Ledger({.warmup_frames = std::min(kWarmupFrames, books_.frames.value_or(10 * kWarmupFrames) / 10),
+                          .has_deadlines = !offscreen});
+  books_.info = run_info(options_, *display_);
+  if (options_.record) books_.recorder = std::make_unique<PathWriter>(*options_.record);
+  if (books_.frames) progress_.begin("walking", *books_.frames, "frames");
 }
 
-bool Walk::frame() {
-  FrameRecord record;
-  record.frame_id = frame_;
-  FrameTiming timing;
-  record.wait = timed([&] { timing = source_.wait(); });
-  if (timing.predicted_display_ns == 0) return true;  // lost while waiting: the next poll says so
-  // Asked for time stamps, some drivers (lavapipe) wait for the frames in flight.
-  const Interval answers = timed([&] { take_late_answers(); });
-  record.blocked_ns += answers.end - answers.begin;
-  record.begin = timed([&] { source_.begin(timing); });
-  record.predicted_display = timing.predicted_display_ns;
-  record.period = timing.period_ns;
-  record.should_render = timing.should_render;
-  record.discarded = timing.discarded;
-  const bool over = is_over(timing);
+void Walk::note_display() const {
+  const FrameSource& source = *display_->source;
+  progress_.note(display_->reason.empty()
+                     ? fmt::format("display: {}: {}", source.kind(), source.description())
+                     : fmt::format("display: {}: {} (because {})", source.kind(), source.description(), display_->reason));
+}
 
-  std::uint64_t drawn = 0;
-  std::vector<ViewPose> views;
-  if (!over && timing.should_render) views = draw(timing, record, drawn);
-  // A frame that was begun is ended, whatever became of it.
-  record.end = timed([&] { source_.end(timing, views); });
-  if (over) return false;
-  record.should_render = drawn != 0;
-  book_.add(record, drawn);
-  if (frames_) progress_.advance(1);
-  ++frame_;
+LegEnd Walk::walk_leg() {
+  WalkLeg leg(options_, pack_, *display_, books_, watch_.get(), progress_);
+  const LegEnd end = leg.run();
+  if (end == LegEnd::kLost) books_.left_ns = now_ns();
+  leg.finish();
+  return end;
+}
+
+// Where the walker stands: the next display begins there.
+Pose Walk::here() const {
+  return books_.head ? pose_of(books_.head->position_m, books_.head->orientation) : pack_.manifest().start;
+}
+
+void Walk::leave_display(const std::string& reason) {
+  if (!books_.left_ns) books_.left_ns = now_ns();
+  books_.info.display_changes.push_back({books_.frame, display_->source->kind(), "", reason, 0});
+  display_.reset();
+}
+
+bool Walk::go_on_without_headset() {
+  progress_.note("the headset is lost; going on without, until it is there again");
+  leave_display("the OpenXR runtime went away");
+  try {
+    display_ = std::make_unique<Display>(open_without_headset(options_.display, pack_.manifest().floor, here()));
+  } catch (const NoDevice& error) {
+    spdlog::error("there is no other display either: {}", error.what());
+    return false;
+  }
+  books_.info.display_changes.back().to = display_->source->kind();
+  note_display();
+  watch_ = std::make_unique<HeadsetWatch>();
   return true;
 }
 
-std::vector<ViewPose> Walk::draw(const FrameTiming& timing, FrameRecord& record, std::uint64_t& drawn) {
-  view_.begin_frame(frame_, timing.predicted_display_ns);
-  ViewPose head;
-  std::vector<ViewPose> views;
-  record.locate_early = timed([&] { views = view_.locate(source_, timing, head); });
-  if (views.empty()) return {};
-
-  rooms_.update(head, timing.predicted_display_ns, record);
-  if (source_.head_is_real()) {
-    wall_fade_.advance(rooms_.is_free(head.position_m), static_cast<double>(timing.period_ns) * 1e-9);
+void Walk::go_back_to_headset() {
+  std::unique_ptr<OpenXrInstance> runtime = watch_->take();
+  watch_.reset();
+  leave_display("the headset is there again");
+  try {
+    display_ = std::make_unique<Display>(
+        open_headset(options_.display, pack_.manifest().floor, here(), std::move(runtime)));
+  } catch (const NoDevice& error) {
+    // Gone once more before it could be used.
+    spdlog::warn("the headset answered but cannot be used: {}", error.what());
+    display_ = std::make_unique<Display>(open_without_headset(options_.display, pack_.manifest().floor, here()));
+    watch_ = std::make_unique<HeadsetWatch>();
   }
-  if (settle_) {
-    const Interval settled = timed([&] { rooms_.settle(); });
-    record.streaming_ns += settled.end - settled.begin;
-  }
-  FrameTarget target;
-  record.record = timed([&] {
-    const Interval acquired = timed([&] { target = source_.acquire(); });
-    record.blocked_ns += acquired.end - acquired.begin;
-    if (target.image == VK_NULL_HANDLE) return;
-    renderer_.record(target);
-    record.blocked_ns += renderer_.blocked_ns();
-  });
-  if (target.image == VK_NULL_HANDLE) return {};
-  // Where rooms reach the device through the queue, a byte budget spreads them over frames: those before the last are
-  // drawn for nothing.
-  while (settle_ && !rooms_.all_shown()) {
-    write(views);
-    renderer_.submit();
-    renderer_.record(target);
-  }
-
-  record.locate_late = timed([&] {
-    std::vector<ViewPose> late = view_.locate(source_, timing, head);
-    if (!late.empty()) views = std::move(late);
-  });
-  write(views);
-  record.submit = timed([&] { drawn = renderer_.submit(); });
-  save_pictures(target);
-  if (recorder_) {
-    recorder_->add({static_cast<double>(timing.predicted_display_ns - *first_display_ns_) * 1e-9, head.position_m,
-                    head.orientation, views});
-  }
-  return views;
+  books_.info.display_changes.back().to = display_->source->kind();
+  note_display();
 }
 
-void Walk::write(const std::vector<ViewPose>& views) {
-  std::vector<ViewConstants> constants;
-  for (const ViewPose& view : views) {
-    constants.push_back(view_constants(
-        view.position_m, view.orientation,
-        {view.fov_left_rad, view.fov_right_rad, view.fov_up_rad, view.fov_down_rad},
-        static_cast<int>(source_.view_extent().width)));
-  }
-  // A replay is shown as it was recorded: nobody's head is in a wall.
-  const float moved = view_.is_replay() ? 0.0f : std::max(source_.fade(), wall_fade_.darkness());
-  settings_.fade = std::max(rooms_.darkness(), moved);
-  renderer_.write(constants, settings_);
-}
-
-void Walk::save_pictures(const FrameTarget& target) {
-  if (options_.pictures && frame_ % options_.picture_every == 0) {
-    pictures_ += save_eye_pictures(*display_.device, target, *options_.pictures, frame_);
-  }
-  if (source_.take_screenshot_request()) {
-    progress_.note(fmt::format("wrote {}", save_screenshot(*display_.device, target).string()));
-  }
-}
-
-void Walk::take_late_answers() {
-  while (const auto times = renderer_.take_times()) book_.add(*times);
-  for (const PoseError& error : source_.take_pose_errors()) book_.add(error);
-}
-
-Ledger Walk::finish() {
-  renderer_.wait();
-  take_late_answers();
-  source_.finish();
-  book_.close();
-  if (recorder_ && frame_ > 0) recorder_->finish();
-  return std::move(ledger_);
+void Walk::save() {
+  if (books_.recorder && books_.frame > 0) books_.recorder->finish();
+  books_.recorder.reset();
+  if (options_.report) write_run(*options_.report, books_.ledger, books_.info);
 }
 
 }  // namespace
 
 WalkResult walk(const WalkOptions& options, Progress& progress) {
   const Pack pack = Pack::open(options.pack);
-  std::optional<Path> path;
-  if (options.path) path = read_path(*options.path);
-  const Manifest& manifest = pack.manifest();
-
-  const Display display = open_display(options.display, manifest.floor, manifest.start);
-  FrameSource& source = *display.source;
-  progress.note(display.reason.empty() ? fmt::format("display: {}: {}", source.kind(), source.description())
-                                       : fmt::format("display: {}: {} (because {})", source.kind(),
-                                                     source.description(), display.reason));
-  const bool offscreen = source.kind() == "offscreen";
-  const std::optional<std::uint64_t> frames = frame_limit(options, offscreen, path);
-
-  WalkResult result;
-  result.info = run_info(options, display);
-  Walk walk(options, pack, display, view_of(manifest, offscreen, std::move(path), frames), frames, progress);
-  if (frames) progress.begin("walking", *frames, "frames");
-  result.end = walk.run();
-  result.ledger = walk.finish();
-  result.info.streaming = walk.streaming();
-  result.pictures = walk.pictures();
-  result.validation_messages = display.device->validation_messages();
-  if (options.report) write_run(*options.report, result.ledger, result.info);
-  return result;
+  return Walk(options, pack, progress).run();
 }
 
 }  // namespace probewalk

@@ -29,6 +29,7 @@ struct WalkOptions {
   unsigned loader_threads = 1;
   std::optional<double> exposure_ev;             // default: the pack's
   std::string command;                           // the words that repeat the walk, for the report
+  DisplayOpener open_display;                    // how the first display is opened; empty = probewalk::open_display
 };
 
 struct WalkResult {
@@ -39,8 +40,10 @@ struct WalkResult {
   enum class End { kDone, kClosed, kInterrupted, kLost } end = End::kDone;
 };
 
-// Walks until the frames, seconds or path are over, the user leaves, the display is lost, or progress.cancelled(). Path
-// and report are written in every case. Throws BadInput, BadUsage, NoDevice.
+// Walks until the frames, seconds or path are over, the user leaves, the display is lost, or progress.cancelled(). A
+// headset that is lost is no end: the walk goes on in a window or offscreen from where the walker stood, and in the
+// headset once it is there again. Path and report are written in every case, an error included. Throws BadInput,
+// BadUsage, NoDevice.
 WalkResult walk(const WalkOptions& options, Progress& progress);
 
 }  // namespace probewalk

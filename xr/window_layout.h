@@ -10,7 +10,8 @@
 
 namespace probewalk {
 
-enum class ShownEyes { kBoth, kLeft, kRight };
+// What of the eyes a window shows; kNone: there is no window (a headset without a mirror).
+enum class ShownEyes { kBoth, kLeft, kRight, kNone };
 
 struct ShownView {
   std::uint32_t view = 0;

@@ -31,8 +31,8 @@ void barrier(VkCommandBuffer commands, VkImage image, std::uint32_t layers, VkIm
 
 }  // namespace
 
-WindowSwapchain::WindowSwapchain(const Device& device, VkSurfaceKHR surface, std::uint32_t slots)
-    : device_(device), surface_(surface) {
+WindowSwapchain::WindowSwapchain(const Device& device, VkSurfaceKHR surface, std::uint32_t slots, Present present)
+    : device_(device), surface_(surface), present_(present) {
   choose_format_and_mode();
   VkCommandPoolCreateInfo pool{VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO};
   pool.flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT;
@@ -55,6 +55,7 @@ WindowSwapchain::WindowSwapchain(const Device& device, VkSurfaceKHR surface, std
 WindowSwapchain::~WindowSwapchain() {
   device_.wait_idle();
   release_images();
+  release_images();  // those retired, too
   if (swapchain_ != VK_NULL_HANDLE) vkDestroySwapchainKHR(device_.handle(), swapchain_, nullptr);
   for (const Slot& slot : slots_) {
     vkDestroySemaphore(device_.handle(), slot.available, nullptr);
@@ -86,14 +87,20 @@ void WindowSwapchain::choose_format_and_mode() {
   if (std::ranges::find(modes, VK_PRESENT_MODE_MAILBOX_KHR) != modes.end()) mode_ = VK_PRESENT_MODE_MAILBOX_KHR;
 }
 
+// Our own copies, not the device: other threads go on using its queue.
+void WindowSwapchain::wait_for_all() {
+  for (std::uint32_t slot = 0; slot < slots_.size(); ++slot) wait_for(slot);
+}
+
 void WindowSwapchain::release_images() {
-  for (VkSemaphore semaphore : copied_) vkDestroySemaphore(device_.handle(), semaphore, nullptr);
+  for (VkSemaphore semaphore : retired_) vkDestroySemaphore(device_.handle(), semaphore, nullptr);
+  retired_ = std::move(copied_);
   copied_.clear();
   images_.clear();
 }
 
 bool WindowSwapchain::recreate(VkExtent2D window) {
-  device_.wait_idle();
+  wait_for_all();
   release_images();
   VkSurfaceCapabilitiesKHR can{};
   const VkResult asked = vkGetPhysicalDeviceSurfaceCapabilitiesKHR(device_.physical(), surface_, &can);
@@ -180,6 +187,7 @@ bool WindowSwapchain::present(std::uint32_t index, const FrameTarget& eyes, cons
   submit.pSignalSemaphoreInfos = &after;
   check(vkResetFences(device_.handle(), 1, &slot.done), "vkResetFences");
   device_.submit(submit, slot.done);
+  if (present_ == Present::kAfterTheCopy) wait_for(index);
 
   VkPresentInfoKHR show{VK_STRUCTURE_TYPE_PRESENT_INFO_KHR};
   show.waitSemaphoreCount = 1;

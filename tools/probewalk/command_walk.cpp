@@ -29,6 +29,8 @@ struct WalkArguments {
   double seconds = 0.0;
   std::uint64_t budget_mib = 0;
   bool settle = false, realtime = false;
+  ShownEyes mirror = ShownEyes::kBoth;
+  CLI::Option* mirror_option = nullptr;
   double ev = 0.0;
   CLI::Option* ev_option = nullptr;
 };
@@ -99,6 +101,10 @@ void run_walk(WalkArguments arguments, const CommonOptions& common) {
   if (arguments.ev_option->count() > 0) walk_options.exposure_ev = arguments.ev;
   walk_options.loader_threads = common.threads > 0 ? static_cast<unsigned>(common.threads) : 2;
   walk_options.display.device.device = common.device;
+  if (arguments.mirror_option->count() > 0) walk_options.display.window_eyes = arguments.mirror;
+  if (arguments.mirror == ShownEyes::kNone && walk_options.display.choice == DisplayChoice::kWindow) {
+    throw BadUsage("--mirror off leaves a window nothing to show; it is for headsets");
+  }
   walk_options.command = own_command_line();
 
   const std::unique_ptr<Progress> progress = make_progress(common);
@@ -117,6 +123,8 @@ void add_walk_command(CLI::App& app, CommonOptions& common) {
   CLI::App* command = app.add_subcommand("walk", "Walk through a pack in a headset, a window or offscreen");
   command->footer(
       "Headset: walk as you are; select (trigger) aims and, released, teleports, menu goes back to the rig's middle.\n"
+      "A window beside it shows what the wearer sees. When the runtime goes away, the walk goes on in a window or offscreen,\n"
+      "and in the headset once it is there again.\n"
       "Window: drag to look, WASD to walk, shift to run, click on the floor to go there, F12 for a picture, Esc to leave.\n"
       "Offscreen: plays the pack's tour once over its frames, on a fixed clock.\n\n"
       "  probewalk walk house.probes                                      the first display that answers\n"
@@ -147,8 +155,10 @@ void add_walk_command(CLI::App& app, CommonOptions& common) {
       ->check(CLI::Range(1ull, 1ull << 24));
   command->add_option("--report", arguments->report, "Write frames.csv, summary.json, trace.json and index.html here");
   const std::map<std::string, ShownEyes> eyes{
-      {"both", ShownEyes::kBoth}, {"left", ShownEyes::kLeft}, {"right", ShownEyes::kRight}};
-  command->add_option("--mirror", walk_options.display.window_eyes, "What the window shows: both eyes side by side, left, right")
+      {"both", ShownEyes::kBoth}, {"left", ShownEyes::kLeft}, {"right", ShownEyes::kRight}, {"off", ShownEyes::kNone}};
+  arguments->mirror_option = command->add_option("--mirror", arguments->mirror,
+                      "What a window shows: both, left, right (default: both in a window of its own, left beside a headset); "
+                      "off: no window beside a headset")
       ->transform(CLI::CheckedTransformer(eyes))
       ->option_text("NAME");
   CLI::Option* settle =

@@ -32,6 +32,14 @@ struct StreamingFacts {
   std::vector<std::int64_t> need_to_resident_ns;  // one a room or level: first wanted to first drawable
 };
 
+// A display that went away, and where the walk went on.
+struct DisplayChange {
+  std::uint64_t frame = 0;   // the first one on the new display
+  std::string from, to;      // FrameSource::kind()
+  std::string reason;
+  std::int64_t gap_ns = 0;   // from noticing to the end of the new display's first frame
+};
+
 struct RunInfo {
   std::string command;          // the words that repeat the run, shell-quoted: command_line(argc, argv)
   MachineInfo machine = read_machine_info();
@@ -48,6 +56,7 @@ struct RunInfo {
   std::string started_utc;      // ISO 8601
   std::optional<double> instrumentation_cost_fraction;  // from an on/off pair; empty = not measured
   StreamingFacts streaming;
+  std::vector<DisplayChange> display_changes;
 };
 
 std::string read_build_info();

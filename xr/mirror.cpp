@@ -1,0 +1,119 @@
+#include "xr/mirror.h"
+
+#include <spdlog/spdlog.h>
+
+#include <cmath>
+
+#include "render/check.h"
+#include "xr/latency/clock.h"
+
+namespace probewalk {
+
+Mirror::Mirror(Window& window, const Device& device, VkExtent2D eye, std::uint32_t views, VkFormat format,
+               ShownEyes shown)
+    : window_(window),
+      device_(device),
+      eye_(eye),
+      shown_(shown),
+      period_ns_(static_cast<std::int64_t>(std::llround(1e9 / window.refresh_hz()))),
+      copy_(device, {format, eye, views, VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT}),
+      swapchain_(device, window.create_surface(device.instance()), 1, WindowSwapchain::Present::kAfterTheCopy) {
+  VkCommandPoolCreateInfo pool{VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO};
+  pool.queueFamilyIndex = device.queue_family();
+  check(vkCreateCommandPool(device.handle(), &pool, nullptr, &pool_), "vkCreateCommandPool");
+  VkCommandBufferAllocateInfo commands{VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO};
+  commands.commandPool = pool_;
+  commands.level = VK_COMMAND_BUFFER_LEVEL_PRIMARY;
+  commands.commandBufferCount = 1;
+  check(vkAllocateCommandBuffers(device.handle(), &commands, &commands_), "vkAllocateCommandBuffers");
+  const VkFenceCreateInfo fence{VK_STRUCTURE_TYPE_FENCE_CREATE_INFO};
+  check(vkCreateFence(device.handle(), &fence, nullptr, &copied_), "vkCreateFence");
+  thread_ = std::thread([this] { show_pictures(); });
+}
+
+Mirror::~Mirror() {
+  {
+    const std::scoped_lock lock(mutex_);
+    stop_ = true;
+  }
+  changed_.notify_one();
+  thread_.join();
+  // Not check: a lost device must not throw here.
+  vkDeviceWaitIdle(device_.handle());
+  vkDestroyFence(device_.handle(), copied_, nullptr);
+  vkDestroyCommandPool(device_.handle(), pool_, nullptr);
+}
+
+void Mirror::offer(const FrameTarget& target, FrameRecord& record) {
+  const std::int64_t now = now_ns();
+  if (is_lost_ || now < due_ns_) return;
+  due_ns_ = now - due_ns_ < period_ns_ ? due_ns_ + period_ns_ : now + period_ns_;
+  const VkExtent2D window = window_.framebuffer_extent();
+  if (window.width == 0 || window.height == 0) return;
+  record.mirror.begin = now;
+  if (!busy_) {
+    copy(target);
+    Picture picture{target, window};
+    picture.eyes.image = copy_.handle();
+    picture.eyes.final_layout = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
+    busy_ = true;
+    {
+      const std::scoped_lock lock(mutex_);
+      next_ = picture;
+    }
+    changed_.notify_one();
+    record.mirror_presented = true;
+  }
+  record.mirror.end = now_ns();
+}
+
+void Mirror::copy(const FrameTarget& target) {
+  check(vkResetCommandPool(device_.handle(), pool_, 0), "vkResetCommandPool");
+  check(vkResetFences(device_.handle(), 1, &copied_), "vkResetFences");
+  VkCommandBufferBeginInfo begin{VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
+  begin.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
+  check(vkBeginCommandBuffer(commands_, &begin), "vkBeginCommandBuffer");
+  transition(commands_, target.image, target.final_layout, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
+  transition(commands_, copy_.handle(), VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
+  VkImageCopy region{};
+  const std::uint32_t first = shown_ == ShownEyes::kRight && target.layers > 1 ? 1 : 0;
+  const std::uint32_t count = shown_ == ShownEyes::kBoth ? target.layers : 1;
+  region.srcSubresource = region.dstSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, first, count};
+  region.extent = {eye_.width, eye_.height, 1};
+  vkCmdCopyImage(commands_, target.image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, copy_.handle(),
+                 VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region);
+  transition(commands_, copy_.handle(), VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
+  transition(commands_, target.image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, target.final_layout);
+  check(vkEndCommandBuffer(commands_), "vkEndCommandBuffer");
+  VkCommandBufferSubmitInfo commands{VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO};
+  commands.commandBuffer = commands_;
+  VkSubmitInfo2 submit{VK_STRUCTURE_TYPE_SUBMIT_INFO_2};
+  submit.commandBufferInfoCount = 1;
+  submit.pCommandBufferInfos = &commands;
+  device_.submit(submit, copied_);
+}
+
+// On the mirror's thread.
+void Mirror::show_pictures() {
+  for (;;) {
+    Picture picture;
+    {
+      std::unique_lock lock(mutex_);
+      changed_.wait(lock, [this] { return stop_ || next_.has_value(); });
+      if (stop_) return;
+      picture = *next_;
+      next_.reset();
+    }
+    try {
+      check(vkWaitForFences(device_.handle(), 1, &copied_, VK_TRUE, UINT64_MAX), "vkWaitForFences");
+      is_lost_ = !swapchain_.present(0, picture.eyes, window_layout(shown_, eye_, picture.window), picture.window);
+      if (is_lost_) spdlog::warn("the mirror's window is gone; the headset goes on");
+    } catch (const Error& error) {
+      spdlog::warn("the mirror ends: {}", error.what());
+      is_lost_ = true;
+    }
+    busy_ = false;
+  }
+}
+
+}  // namespace probewalk

@@ -1,0 +1,66 @@
+// What the wearer sees, on the desktop. The headset never waits for it: the frame thread hands a copy of the eyes over
+// when one is due and the last has been shown, and goes on; a thread of the mirror's own brings it to the window.
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <cstdint>
+#include <mutex>
+#include <optional>
+#include <thread>
+#include <vector>
+
+#include "render/device.h"
+#include "render/frame_target.h"
+#include "render/image.h"
+#include "xr/latency/frame_record.h"
+#include "xr/window.h"
+#include "xr/window_layout.h"
+#include "xr/window_swapchain.h"
+
+namespace probewalk {
+
+class Mirror {
+ public:
+  // `window` and `device` (made with the window's hooks) outlive the mirror. `eye` and `views` are those of the headset.
+  Mirror(Window& window, const Device& device, VkExtent2D eye, std::uint32_t views, VkFormat format, ShownEyes shown);
+  ~Mirror();
+  Mirror(const Mirror&) = delete;
+  Mirror& operator=(const Mirror&) = delete;
+
+  // Window events; once a frame, on the thread that made the window.
+  WindowInput poll() { return window_.poll(); }
+  // After the frame's submit and before its image goes back to the runtime. Fills in what the record says about the
+  // mirror: nothing when no picture was due, not presented when the mirror was still busy with the last one.
+  void offer(const FrameTarget& target, FrameRecord& record);
+
+ private:
+  struct Picture {
+    FrameTarget eyes;
+    VkExtent2D window{};
+  };
+  void copy(const FrameTarget& target);
+  void show_pictures();
+
+  Window& window_;
+  const Device& device_;
+  const VkExtent2D eye_;
+  const ShownEyes shown_;
+  const std::int64_t period_ns_;
+  std::int64_t due_ns_ = 0;
+  Image copy_;
+  VkCommandPool pool_ = VK_NULL_HANDLE;
+  VkCommandBuffer commands_ = VK_NULL_HANDLE;
+  VkFence copied_ = VK_NULL_HANDLE;
+  WindowSwapchain swapchain_;
+
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::optional<Picture> next_;   // handed over, not shown yet
+  std::atomic<bool> busy_ = false;
+  std::atomic<bool> is_lost_ = false;  // window or surface gone: nothing is mirrored any more
+  bool stop_ = false;
+  std::thread thread_;  // last: it uses the others
+};
+
+}  // namespace probewalk

@@ -1,0 +1,212 @@
+#include "xr/walk_leg.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <thread>
+#include <utility>
+
+#include "content/probe/probe_set.h"
+#include "render/view.h"
+#include "shaders/shared/display_transform.h"
+#include "xr/latency/clock.h"
+#include "xr/mirror.h"
+#include "xr/picture_saver.h"
+
+namespace probewalk {
+namespace {
+
+constexpr auto kIdleSleep = std::chrono::milliseconds(5);
+
+template <typename Work>
+Interval timed(const Work& work) {
+  Interval interval;
+  interval.begin = now_ns();
+  work();
+  interval.end = now_ns();
+  return interval;
+}
+
+}  // namespace
+
+WalkLeg::WalkLeg(const WalkOptions& options, const Pack& pack, const Display& display, WalkBooks& books,
+                 const HeadsetWatch* watch, Progress& progress)
+    : options_(options),
+      display_(display),
+      source_(*display.source),
+      books_(books),
+      watch_(watch),
+      progress_(progress),
+      settle_(options.settle.value_or(source_.kind() == "offscreen" && !books.left_ns)),
+      rooms_(pack, *display.device, {options.budget_bytes, options.loader_threads}, progress),
+      renderer_(*display.device, rooms_.store(),
+                {.tracer = {.extent_px = source_.view_extent(), .views = source_.view_count()},
+                 .target_format = source_.color_format()}),
+      book_(books.ledger) {
+  settings_.trace = default_dials(pack.manifest().radiance_scale);
+  settings_.exposure = exposure_from_ev(static_cast<float>(options.exposure_ev.value_or(pack.manifest().exposure_ev)));
+}
+
+LegEnd WalkLeg::run() {
+  for (;;) {
+    if (progress_.cancelled()) return LegEnd::kInterrupted;
+    if (watch_ != nullptr && watch_->is_there()) return LegEnd::kHeadsetBack;
+    if (display_.mirror) {
+      const WindowInput input = display_.mirror->poll();
+      if (input.closed) return LegEnd::kClosed;
+      screenshot_ = screenshot_ || input.screenshot;
+    }
+    if (books_.frames && books_.frame >= *books_.frames) return LegEnd::kDone;
+    switch (source_.poll()) {
+      case SourceState::kIdle:
+        std::this_thread::sleep_for(kIdleSleep);
+        break;
+      case SourceState::kRunning:
+        if (!frame()) return LegEnd::kDone;
+        break;
+      case SourceState::kLost:
+        return LegEnd::kLost;
+      case SourceState::kFinished:
+        return LegEnd::kClosed;
+    }
+  }
+}
+
+bool WalkLeg::is_over(const FrameTiming& timing) {
+  if (!books_.first_display_ns) books_.first_display_ns = timing.predicted_display_ns;
+  const double seconds = static_cast<double>(timing.predicted_display_ns - *books_.first_display_ns) * 1e-9;
+  if (options_.seconds && seconds > *options_.seconds) return true;
+  return !books_.frames && !options_.seconds && books_.view.is_over(timing.predicted_display_ns);
+}
+
+bool WalkLeg::frame() {
+  FrameRecord record;
+  record.frame_id = books_.frame;
+  FrameTiming timing;
+  record.wait = timed([&] { timing = source_.wait(); });
+  if (timing.predicted_display_ns == 0) return true;  // lost while waiting: the next poll says so
+  // Asked for time stamps, some drivers (lavapipe) wait for the frames in flight.
+  const Interval answers = timed([&] { take_late_answers(); });
+  record.blocked_ns += answers.end - answers.begin;
+  record.begin = timed([&] { source_.begin(timing); });
+  record.predicted_display = timing.predicted_display_ns;
+  record.period = timing.period_ns;
+  record.should_render = timing.should_render;
+  record.discarded = timing.discarded;
+  const bool over = is_over(timing);
+
+  std::uint64_t drawn = 0;
+  std::vector<ViewPose> views;
+  if (!over && timing.should_render) views = draw(timing, record, drawn);
+  // A frame that was begun is ended, whatever became of it.
+  record.end = timed([&] { source_.end(timing, views); });
+  if (over) return false;
+  if (drawn != 0 && books_.left_ns) note_arrival();
+  record.should_render = drawn != 0;
+  book_.add(record, drawn);
+  if (books_.frames) progress_.advance(1);
+  ++books_.frame;
+  return true;
+}
+
+std::vector<ViewPose> WalkLeg::draw(const FrameTiming& timing, FrameRecord& record, std::uint64_t& drawn) {
+  books_.view.begin_frame(books_.frame, timing.predicted_display_ns);
+  ViewPose head;
+  std::vector<ViewPose> views;
+  record.locate_early = timed([&] { views = books_.view.locate(source_, timing, head); });
+  if (views.empty()) return {};
+
+  rooms_.update(head, timing.predicted_display_ns, record);
+  if (source_.head_is_real()) {
+    wall_fade_.advance(rooms_.is_free(head.position_m), static_cast<double>(timing.period_ns) * 1e-9);
+  }
+  if (settle_) {
+    const Interval settled = timed([&] { rooms_.settle(); });
+    record.streaming_ns += settled.end - settled.begin;
+  }
+  FrameTarget target;
+  record.record = timed([&] {
+    const Interval acquired = timed([&] { target = source_.acquire(); });
+    record.blocked_ns += acquired.end - acquired.begin;
+    if (target.image == VK_NULL_HANDLE) return;
+    renderer_.record(target);
+    record.blocked_ns += renderer_.blocked_ns();
+  });
+  if (target.image == VK_NULL_HANDLE) return {};
+  // Where rooms reach the device through the queue, a byte budget spreads them over frames: those before the last are
+  // drawn for nothing.
+  while (settle_ && !rooms_.all_shown()) {
+    write(views);
+    renderer_.submit();
+    renderer_.record(target);
+  }
+
+  record.locate_late = timed([&] {
+    std::vector<ViewPose> late = books_.view.locate(source_, timing, head);
+    if (!late.empty()) views = std::move(late);
+  });
+  write(views);
+  record.submit = timed([&] { drawn = renderer_.submit(); });
+  books_.head = head;
+  save_pictures(target);
+  if (display_.mirror) display_.mirror->offer(target, record);
+  if (books_.recorder) {
+    books_.recorder->add({static_cast<double>(timing.predicted_display_ns - *books_.first_display_ns) * 1e-9, head.position_m,
+                    head.orientation, views});
+  }
+  return views;
+}
+
+void WalkLeg::write(const std::vector<ViewPose>& views) {
+  std::vector<ViewConstants> constants;
+  for (const ViewPose& view : views) {
+    constants.push_back(view_constants(
+        view.position_m, view.orientation,
+        {view.fov_left_rad, view.fov_right_rad, view.fov_up_rad, view.fov_down_rad},
+        static_cast<int>(source_.view_extent().width)));
+  }
+  // A replay is shown as it was recorded: nobody's head is in a wall.
+  const float moved = books_.view.is_replay() ? 0.0f : std::max(source_.fade(), wall_fade_.darkness());
+  settings_.fade = std::max(rooms_.darkness(), moved);
+  renderer_.write(constants, settings_);
+}
+
+void WalkLeg::save_pictures(const FrameTarget& target) {
+  if (options_.pictures && books_.frame % options_.picture_every == 0) {
+    books_.pictures += save_eye_pictures(*display_.device, target, *options_.pictures, books_.frame);
+  }
+  if (source_.take_screenshot_request() || std::exchange(screenshot_, false)) {
+    progress_.note(fmt::format("wrote {}", save_screenshot(*display_.device, target).string()));
+  }
+}
+
+// The first frame on another display: the wearer, or whoever reads the report, wants to know how long it took.
+void WalkLeg::note_arrival() {
+  DisplayChange& change = books_.info.display_changes.back();
+  change.frame = books_.frame;
+  change.gap_ns = now_ns() - *books_.left_ns;
+  books_.left_ns.reset();
+  progress_.note(fmt::format("the walk goes on: {}, {:.2f} s later", source_.kind(), static_cast<double>(change.gap_ns) * 1e-9));
+}
+
+void WalkLeg::take_late_answers() {
+  while (const auto times = renderer_.take_times()) book_.add(*times);
+  for (const PoseError& error : source_.take_pose_errors()) book_.add(error);
+}
+
+void WalkLeg::finish() {
+  renderer_.wait();
+  take_late_answers();
+  source_.finish();
+  book_.close();
+  const StreamingFacts facts = rooms_.facts();
+  StreamingFacts& all = books_.info.streaming;
+  all.rooms_loaded += facts.rooms_loaded;
+  all.device_budget_bytes = facts.device_budget_bytes;
+  all.need_to_resident_ns.insert(all.need_to_resident_ns.end(), facts.need_to_resident_ns.begin(),
+                                 facts.need_to_resident_ns.end());
+  books_.validation_messages += display_.device->validation_messages();
+}
+
+}  // namespace probewalk
