@@ -11,7 +11,7 @@ namespace {
 
 // A runtime that has just gone needs a moment before it can come back; one that stays away is asked less often.
 constexpr std::chrono::milliseconds kFirstPause{500};
-constexpr std::chrono::milliseconds kLongestPause{2000};
+constexpr std::chrono::milliseconds kLongestPause{4000};
 
 }  // namespace
 

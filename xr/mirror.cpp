@@ -16,7 +16,9 @@ Mirror::Mirror(Window& window, const Device& device, VkExtent2D eye, std::uint32
       eye_(eye),
       shown_(shown),
       period_ns_(static_cast<std::int64_t>(std::llround(1e9 / window.refresh_hz()))),
-      copy_(device, {format, eye, views, VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT}),
+      // SAMPLED: our images have a view, and a view wants a use that is not copying alone.
+      copy_(device, {format, eye, views, VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT |
+                                             VK_IMAGE_USAGE_SAMPLED_BIT}),
       swapchain_(device, window.create_surface(device.instance()), 1, WindowSwapchain::Present::kAfterTheCopy) {
   VkCommandPoolCreateInfo pool{VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO};
   pool.queueFamilyIndex = device.queue_family();

@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "content/image/image.h"
 #include "support/room_pack.h"
@@ -130,25 +131,78 @@ TEST(Displays, HeadsetWalkIsFocusedAndTheValidationLayersAreSilent) {
   EXPECT_GT(*std::max_element(left.rgb.begin(), left.rgb.end()), 100);
 }
 
-TEST(Displays, RuntimeThatDiesEndsTheWalkInOrder) {
+// A Monado service that can be killed and started again; $service is its process.
+const char* const kMortalService =
+    "export XDG_RUNTIME_DIR=$(mktemp -d /tmp/pwxr.XXXXXX) XR_RUNTIME_JSON=/usr/share/openxr/1/openxr_monado.json\n"
+    "start_service() {\n"
+    "  rm -f \"$XDG_RUNTIME_DIR/monado_comp_ipc\"\n"
+    "  XRT_COMPOSITOR_NULL=1 SIMULATED_ENABLE=1 XRT_NO_STDIN=1 monado-service >>monado.log 2>&1 </dev/null &\n"
+    "  service=$!\n"
+    "  for _ in $(seq 100); do grep -q \" 00010000 .* $XDG_RUNTIME_DIR/monado_comp_ipc\\$\" /proc/net/unix && break; sleep 0.1; done\n"
+    "}\n"
+    "await() { for _ in $(seq 200); do [ \"$(grep -c \"$2\" \"$1\" 2>/dev/null)\" -ge \"$3\" ] && return; sleep 0.1; done; echo \"no $2\" >&2; }\n"
+    "start_service\n";
+
+TEST(Displays, WalkGoesOnWithoutARuntimeThatDiesAndTakesItBack) {
   if (!installed("monado-service")) GTEST_SKIP() << "monado-service is not installed";
   const fs::path folder = fresh_folder("displays-killed");
   const RunResult run = run_script(
-      folder,
-      "export XDG_RUNTIME_DIR=$(mktemp -d /tmp/pwxr.XXXXXX) XR_RUNTIME_JSON=/usr/share/openxr/1/openxr_monado.json\n"
-      "XRT_COMPOSITOR_NULL=1 SIMULATED_ENABLE=1 XRT_NO_STDIN=1 monado-service >monado.log 2>&1 </dev/null &\n"
-      "service=$!\n"
-      "for _ in $(seq 100); do grep -q \" 00010000 .* $XDG_RUNTIME_DIR/monado_comp_ipc\\$\" /proc/net/unix && break; sleep 0.1; done\n"
-      "\"$probewalk\" walk \"$pack\" --display headset --eye-size 64x48 --record walked.jsonl --report report &\n"
+      folder, std::string(kMortalService) +
+      "unset DISPLAY WAYLAND_DISPLAY\n"
+      "\"$probewalk\" walk \"$pack\" --display headset --eye-size 64x48 --record walked.jsonl --report report 2>walk.log &\n"
       "walk=$!\n"
-      "for _ in $(seq 200); do [ -s walked.jsonl.part ] && break; sleep 0.1; done\n"
-      "kill -KILL $service\n"
-      "wait $walk; code=$?\nrm -rf \"$XDG_RUNTIME_DIR\"\nexit $code");
-  EXPECT_EQ(run.exit_code, 4) << run.err;
-  EXPECT_THAT(run.err, HasSubstr("the headset was lost after"));
+      "await walk.log FOCUSED 1\n"
+      "for k in 1 2; do\n"
+      "  kill -KILL $service; wait $service 2>/dev/null\n"
+      "  await walk.log 'goes on: offscreen' $k\n"
+      "  start_service\n"
+      "  await walk.log 'goes on: headset' $k\n"
+      "  await walk.log FOCUSED $((k + 1))\n"
+      "done\n"
+      "kill -INT $walk; wait $walk; code=$?\n"
+      "kill $service; rm -rf \"$XDG_RUNTIME_DIR\"\nexit $code");
+  EXPECT_EQ(run.exit_code, 5) << run.err << read_text(folder / "walk.log");
   EXPECT_TRUE(fs::exists(folder / "walked.jsonl"));
   EXPECT_FALSE(fs::exists(folder / "walked.jsonl.part"));
-  EXPECT_TRUE(fs::exists(folder / "report" / "index.html"));
+  const json changes = json::parse(read_text(folder / "report" / "summary.json"))["display_changes"];
+  ASSERT_EQ(changes.size(), 4u) << read_text(folder / "walk.log");
+  for (std::size_t k = 0; k < changes.size(); ++k) {
+    EXPECT_EQ(changes[k]["from"], k % 2 == 0 ? "headset" : "offscreen");
+    EXPECT_EQ(changes[k]["to"], k % 2 == 0 ? "offscreen" : "headset");
+    EXPECT_GT(changes[k]["gap_ns"].get<std::int64_t>(), 0);
+  }
+  EXPECT_THAT(read_text(folder / "report" / "index.html"), HasSubstr("headset to offscreen"));
+}
+
+TEST(Displays, MirrorShowsWhatTheWearerSeesAndTheWindowTakesOver) {
+  if (!installed("monado-service") || !installed("Xvfb")) GTEST_SKIP() << "monado-service or Xvfb is not installed";
+  const fs::path folder = fresh_folder("displays-mirror");
+  const RunResult run = run_script(
+      folder, std::string(kVirtualScreen) + kMortalService +
+      "\"$probewalk\" walk \"$pack\" --display headset --mirror both --eye-size 64x48 --report report --validate 2>walk.log &\n"
+      "walk=$!\n"
+      "await walk.log FOCUSED 1\nsleep 2\n"
+      "kill -KILL $service; wait $service 2>/dev/null\n"
+      "await walk.log 'goes on: window' 1\nsleep 1\n"
+      "kill -INT $walk; wait $walk; code=$?\n"
+      "rm -rf \"$XDG_RUNTIME_DIR\"\nexit $code");
+  EXPECT_EQ(run.exit_code, 5) << run.err << read_text(folder / "walk.log");
+  EXPECT_THAT(read_text(folder / "walk.log"), Not(HasSubstr("Validation")));
+  EXPECT_THAT(read_text(folder / "walk.log"), Not(HasSubstr("VUID")));
+  std::istringstream frames(read_text(folder / "report" / "frames.csv"));
+  std::string line;
+  std::getline(frames, line);
+  const auto column = [header = line](const std::string& name) {
+    return std::count(header.begin(), header.begin() + static_cast<std::ptrdiff_t>(header.find(name)), ',');
+  };
+  int presented = 0;
+  while (std::getline(frames, line)) {
+    std::istringstream cells(line);
+    std::string cell;
+    for (std::ptrdiff_t k = 0; k <= column("mirror_presented"); ++k) std::getline(cells, cell, ',');
+    presented += cell == "1";
+  }
+  EXPECT_GT(presented, 3);
 }
 
 TEST(Displays, WindowShowsTheSamePictureAsOffscreen) {
@@ -197,6 +251,7 @@ TEST(Displays, WrongWalkOptionsAreRefusedInOneLine) {
   EXPECT_EQ(refused("--frames 0"), 2);
   EXPECT_EQ(refused("--settle --realtime"), 2);
   EXPECT_EQ(refused("--mirror nose"), 2);
+  EXPECT_EQ(refused("--mirror off --display window"), 2);
   EXPECT_EQ(refused("--path nowhere.jsonl"), 3);
   EXPECT_EQ(refused("--record nowhere/p.jsonl --eye-size 32x32 --frames 1"), 3);
 }

@@ -12,6 +12,7 @@
 
 #include "content/error.h"
 #include "content/image/image.h"
+#include "render/check.h"
 #include "support/room_pack.h"
 #include "xr/path.h"
 #include "xr/walk_view.h"
@@ -183,6 +184,53 @@ TEST(WalkOffscreen, EndsInOrderWhenInterrupted) {
   const WalkResult result = walk(options, progress);
   EXPECT_EQ(result.end, WalkResult::End::kInterrupted);
   EXPECT_EQ(lines_of(*options.report / "frames.csv").size(), 4u);
+}
+
+// An offscreen display whose device is lost while the fifth frame is drawn.
+class DoomedSource final : public FrameSource {
+ public:
+  explicit DoomedSource(std::unique_ptr<FrameSource> whole) : whole_(std::move(whole)) {}
+  std::string kind() const override { return whole_->kind(); }
+  std::string description() const override { return whole_->description(); }
+  SourceState poll() override { return whole_->poll(); }
+  FrameTiming wait() override { return whole_->wait(); }
+  void begin(FrameTiming& timing) override { whole_->begin(timing); }
+  std::vector<ViewPose> locate(const FrameTiming& timing, ViewPose* head) override { return whole_->locate(timing, head); }
+  VkExtent2D view_extent() const override { return whole_->view_extent(); }
+  std::uint32_t view_count() const override { return whole_->view_count(); }
+  VkFormat color_format() const override { return whole_->color_format(); }
+  FrameTarget acquire() override {
+    if (++frames_ == 5) check(VK_ERROR_DEVICE_LOST, "vkQueueSubmit2");
+    return whole_->acquire();
+  }
+  void end(const FrameTiming& timing, const std::vector<ViewPose>& views) override { whole_->end(timing, views); }
+
+ private:
+  std::unique_ptr<FrameSource> whole_;
+  int frames_ = 0;
+};
+
+TEST(WalkOffscreen, KeepsPathAndReportWhenTheDeviceIsLost) {
+  const fs::path folder = fresh("device-lost");
+  fs::create_directories(folder);
+  WalkOptions options = offscreen(100);
+  options.report = folder / "report";
+  options.record = folder / "walked.jsonl";
+  options.open_display = [](const DisplayOptions& display, const FloorMap& floor, const Pose& start) {
+    Display doomed = open_display(display, floor, start);
+    doomed.source = std::make_unique<DoomedSource>(std::move(doomed.source));
+    return doomed;
+  };
+  SilentProgress progress;
+  try {
+    walk(options, progress);
+    FAIL() << "the walk went on without a device";
+  } catch (const VulkanError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("VK_ERROR_DEVICE_LOST"));
+  }
+  EXPECT_EQ(lines_of(options.report.value() / "frames.csv").size(), 5u);
+  EXPECT_EQ(lines_of(*options.record).size(), 4u);
+  EXPECT_TRUE(fs::exists(*options.report / "summary.json"));
 }
 
 TEST(WalkOffscreen, GoesOnWithTheCoarseLevelWhenAChunkIsBad) {

@@ -143,6 +143,14 @@ const std::vector<Fact>& facts() {
       {"display", [](const Run& r, const Summary&) {
          return r.info.display + (r.info.display_details.empty() ? "" : ": " + r.info.display_details);
        }},
+      {"display changes", [](const Run& r, const Summary&) {
+         std::string text;
+         for (const DisplayChange& change : r.info.display_changes) {
+           text += fmt::format("{}frame {}: {} to {} ({}), {} ms without a picture", text.empty() ? "" : "; ", change.frame,
+                               change.from, change.to, change.reason, in_ms(change.gap_ns));
+         }
+         return text;
+       }},
       {"runtime", [](const Run& r, const Summary&) { return r.info.runtime; }},
       {"refresh", [](const Run&, const Summary& s) {
          return s.period_ns > 0 ? fmt::format("{:.2f} Hz ({} ms)", 1e9 / static_cast<double>(s.period_ns), in_ms(s.period_ns)) : "";

@@ -81,6 +81,18 @@ Json worst_json(const std::vector<WorstFrame>& worst) {
   return list;
 }
 
+Json changes_json(const std::vector<DisplayChange>& changes) {
+  Json list = Json::array();
+  for (const DisplayChange& change : changes) {
+    list.push_back({{"frame_id", change.frame},
+                    {"from", change.from},
+                    {"to", change.to},
+                    {"reason", change.reason},
+                    {"gap_ns", change.gap_ns}});
+  }
+  return list;
+}
+
 // Reads json[key] into value; a missing key or null leaves it as it was.
 template <typename T>
 void take(const Json& json, const char* key, T& value, const std::string& file) {
@@ -132,6 +144,7 @@ std::string summary_json(const Ledger& ledger, const RunInfo& info) {
   for (const QuantitySummary& quantity : summary.quantities) table[quantity.name] = percentiles(quantity);
   json["streaming"] = streaming_json(summary, info.streaming);
   json["worst_frames"] = worst_json(summary.worst);
+  if (!info.display_changes.empty()) json["display_changes"] = changes_json(info.display_changes);
   // Names may hold any bytes; what is not UTF-8 is replaced rather than refused.
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
@@ -181,6 +194,17 @@ SummaryHead parse_summary_json(std::string_view text, const std::string& file) {
   take(streaming, "rooms_loaded", info.streaming.rooms_loaded, file);
   take(streaming, "device_budget_bytes", info.streaming.device_budget_bytes, file);
   take(streaming, "need_to_resident_ns", info.streaming.need_to_resident_ns, file);
+  if (const auto changes = json.find("display_changes"); changes != json.end() && changes->is_array()) {
+    for (const Json& entry : *changes) {
+      DisplayChange change;
+      take(entry, "frame_id", change.frame, file);
+      take(entry, "from", change.from, file);
+      take(entry, "to", change.to, file);
+      take(entry, "reason", change.reason, file);
+      take(entry, "gap_ns", change.gap_ns, file);
+      info.display_changes.push_back(std::move(change));
+    }
+  }
   return head;
 }
 
