@@ -33,6 +33,9 @@ Window::Window(const std::string& title, VkExtent2D size) {
   glfwWindowHint(GLFW_CLIENT_API, GLFW_NO_API);
   window_ = glfwCreateWindow(static_cast<int>(size.width), static_cast<int>(size.height), title.c_str(), nullptr, nullptr);
   if (window_ == nullptr) throw NoDevice(fmt::format("no window: {}", glfw_reason()));
+  // A key that was pressed and let go between two polls counts all the same: frames may be slow.
+  glfwSetInputMode(window_, GLFW_STICKY_KEYS, GLFW_TRUE);
+  glfwSetInputMode(window_, GLFW_STICKY_MOUSE_BUTTONS, GLFW_TRUE);
   glfwGetCursorPos(window_, &cursor_px_.x, &cursor_px_.y);
 }
 

@@ -178,7 +178,7 @@ PW_FUNCTION RayAnswer trace_ray(GridConstants grid, TraceConstants dials, real3 
   answer.t = t;
   CandidateList list = cell_candidates(grid, dials, origin_hi + d * t, d);
   real best = PW_NEVER, nearest = PW_NEVER;
-  int environment = -1;
+  int environment = -1, open = -1;
   for (int k = 0; k < list.count; ++k) {
     ProbeRecord probe = pw_probe(grid, list.probe[k]);
     real3 x = relative_origin(probe, origin_hi, origin_lo) + d * t;
@@ -187,6 +187,8 @@ PW_FUNCTION RayAnswer trace_ray(GridConstants grid, TraceConstants dials, real3 
       nearest = len;
       environment = list.probe[k];
     }
+    if (open < 0 && nearest_vertex_w(probe, d) <= real(0)) open = list.probe[k];
+    answer.lookups += 1u;
     if (!(len > real(0))) continue;
     real off = abs(nearest_vertex_w(probe, x) * len - real(1));
     answer.lookups += 1u;
@@ -196,6 +198,6 @@ PW_FUNCTION RayAnswer trace_ray(GridConstants grid, TraceConstants dials, real3 
     }
   }
   answer.environment = !(best < PW_PLAUSIBLE);
-  if (answer.environment) answer.probe = environment;
+  if (answer.environment) answer.probe = open >= 0 ? open : environment;
   return answer;
 }
