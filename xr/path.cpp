@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <sstream>
+#include <system_error>
 
 #include "content/error.h"
 #include "content/pack/pack_format.h"
@@ -113,6 +115,17 @@ ViewPose between(const ViewPose& a, const ViewPose& b, double f) {
   return view;
 }
 
+// Cuts a file behind its last line end; the size that is left, 0 when it cannot be read.
+std::uint64_t keep_whole_lines(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::uint64_t kept = 0;
+  for (std::string line; std::getline(in, line) && !in.eof();) kept += line.size() + 1;
+  in.close();
+  std::error_code error;
+  std::filesystem::resize_file(file, kept, error);
+  return error ? 0 : kept;
+}
+
 double angle_between(const glm::dquat& a, const glm::dquat& b) {
   return 2.0 * std::acos(std::min(1.0, std::abs(glm::dot(a, b))));
 }
@@ -193,23 +206,35 @@ std::string path_line(const PathPose& pose) {
 PathWriter::PathWriter(std::filesystem::path file) : file_(std::move(file)), temporary_(file_) {
   temporary_ += ".part";
   out_.open(temporary_, std::ios::binary | std::ios::trunc);
-  if (!out_) throw BadInput(file_.string() + ": cannot write the path here; name a file in a folder that exists");
+  if (!out_) {
+    throw BadInput(fmt::format("{}: the path cannot be written here ({}); name a file in a folder that exists and can be "
+                               "written to", file_.string(), std::generic_category().message(errno)));
+  }
 }
 
 PathWriter::~PathWriter() {
-  if (!out_.is_open()) return;
+  if (is_finished_) return;
   out_.close();
   std::error_code ignored;
   std::filesystem::remove(temporary_, ignored);
 }
 
-void PathWriter::add(const PathPose& pose) { out_ << path_line(pose) << '\n'; }
+void PathWriter::add(const PathPose& pose) {
+  if (out_) out_ << path_line(pose) << '\n';
+}
 
 void PathWriter::finish() {
   out_.close();
+  const bool is_whole = !out_.fail();
   std::error_code error;
-  if (!out_.fail()) std::filesystem::rename(temporary_, file_, error);
-  if (out_.fail() || error) throw BadInput(file_.string() + ": the path could not be written; is the disk full?");
+  std::uint64_t kept = is_whole ? std::filesystem::file_size(temporary_, error) : keep_whole_lines(temporary_);
+  if (kept > 0 && !error) {
+    std::filesystem::rename(temporary_, file_, error);
+    is_finished_ = !error;
+  }
+  if (is_whole && !error) return;
+  throw BadInput(fmt::format("{}: the path could not be written to its end; is the disk full? {}", file_.string(),
+                             is_finished_ ? "It holds what could be" : "Nothing is kept"));
 }
 
 Path path_of_tour(const std::vector<Pose>& tour, double speed_m_s, double turn_rad_s) {

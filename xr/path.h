@@ -37,7 +37,8 @@ Path parse_path(const std::string& text, const std::string& source);
 Path read_path(const std::filesystem::path& file);
 std::string path_line(const PathPose& pose);
 
-// Writes poses as they come to a temporary file; finish() gives it its name. Without finish() nothing stays.
+// Writes poses as they come to a temporary file; finish() gives it its name. Without finish() nothing stays. A disk that
+// fills up stops nobody's walk: finish() keeps the poses that fitted, then throws BadInput.
 class PathWriter {
  public:
   explicit PathWriter(std::filesystem::path file);
@@ -50,6 +51,7 @@ class PathWriter {
  private:
   std::filesystem::path file_, temporary_;
   std::ofstream out_;
+  bool is_finished_ = false;
 };
 
 // A walk through key poses at `speed_m_s`, which slows down where the view turns faster than `turn_rad_s`. Positions and

@@ -134,6 +134,8 @@ void Walk::begin(std::optional<Path> path) {
   books_.ledger = Ledger({.warmup_frames = std::min(kWarmupFrames, books_.frames.value_or(10 * kWarmupFrames) / 10),
                           .has_deadlines = !offscreen});
   books_.info = run_info(options_, *display_);
+  // Before the walk, not after it, is the time to hear that nothing can be written.
+  if (options_.report) make_run_folder(*options_.report);
   if (options_.record) books_.recorder = std::make_unique<PathWriter>(*options_.record);
   if (books_.frames) progress_.begin("walking", *books_.frames, "frames");
 }
@@ -197,9 +199,16 @@ void Walk::go_back_to_headset() {
 }
 
 void Walk::save() {
-  if (books_.recorder && books_.frame > 0) books_.recorder->finish();
-  books_.recorder.reset();
-  if (options_.report) write_run(*options_.report, books_.ledger, books_.info);
+  // The report first: whatever becomes of the path, and the other way round.
+  const std::unique_ptr<PathWriter> recorder = std::move(books_.recorder);
+  std::exception_ptr failed;
+  try {
+    if (options_.report) write_run(*options_.report, books_.ledger, books_.info);
+  } catch (const BadInput&) {
+    failed = std::current_exception();
+  }
+  if (recorder && books_.frame > 0) recorder->finish();
+  if (failed) std::rethrow_exception(failed);
 }
 
 }  // namespace

@@ -3,6 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <sys/resource.h>
+
+#include <csignal>
+
 #include <cmath>
 #include <filesystem>
 #include <numbers>
@@ -148,6 +152,28 @@ TEST(Path, ReplayUsesRecordedViewsElseTheDisplaysOwnEyes) {
   const auto views = replayed_views(pose, {eye, eye}, head);
   EXPECT_NEAR(glm::distance(views[0].position_m, glm::dvec3(3.03, 1.6, 0.1)), 0.0, 1e-12);
   EXPECT_NEAR(std::abs(glm::dot(views[0].orientation, pose.orientation)), 1.0, 1e-12);
+}
+
+TEST(PathWriter, KeepsTheWholeLinesThatFittedOnAFullDisk) {
+  const std::filesystem::path file = std::filesystem::path(PROBEWALK_TEST_OUTPUT_DIR) / "full-disk.jsonl";
+  std::filesystem::remove(file);
+  // A limit on file sizes fails writes as a full disk does, once its signal is ignored.
+  rlimit before{};
+  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
+  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+  const rlimit small{10000, before.rlim_max};
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &small), 0);
+  {
+    PathWriter writer(file);
+    for (int k = 0; k < 1000; ++k) writer.add({0.1 * k, glm::dvec3(0.001 * k, 1.6, 0), glm::dquat(1, 0, 0, 0), {}});
+    EXPECT_THROW(writer.finish(), BadInput);
+  }
+  setrlimit(RLIMIT_FSIZE, &before);
+  std::signal(SIGXFSZ, handler);
+  const Path kept = read_path(file);
+  EXPECT_GT(kept.poses.size(), 10u);
+  EXPECT_LT(kept.poses.size(), 1000u);
+  EXPECT_FALSE(std::filesystem::exists(file.string() + ".part"));
 }
 
 TEST(PathWriter, NamesTheFileOnlyWhenItIsWhole) {

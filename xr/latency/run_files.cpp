@@ -1,5 +1,8 @@
 #include "xr/latency/run_files.h"
 
+#include <unistd.h>
+
+#include <cerrno>
 #include <span>
 #include <string>
 #include <system_error>
@@ -34,10 +37,18 @@ std::string name_of(const std::filesystem::path& directory) {
 
 }  // namespace
 
-void write_run(const std::filesystem::path& directory, const Ledger& ledger, const RunInfo& info) {
+void make_run_folder(const std::filesystem::path& directory) {
   std::error_code error;
   std::filesystem::create_directories(directory, error);
   if (error) throw BadInput("cannot make the directory " + directory.string() + ": " + error.message() + "; choose another");
+  if (access(directory.c_str(), W_OK) != 0) {
+    throw BadInput("cannot write to the directory " + directory.string() + ": " + std::generic_category().message(errno) +
+                   "; choose another");
+  }
+}
+
+void write_run(const std::filesystem::path& directory, const Ledger& ledger, const RunInfo& info) {
+  make_run_folder(directory);
   write_text(directory / "frames.csv", frames_csv(ledger));
   write_text(directory / "trace.json", trace_json(ledger));
   const Run run{name_of(directory), info, ledger};

@@ -11,6 +11,8 @@
 
 namespace probewalk {
 
+// Makes the directory a run is written to, if need be. Throws BadInput when nothing can be written there.
+void make_run_folder(const std::filesystem::path& directory);
 // Makes the directory when it is not there. Throws BadInput naming the file that cannot be written and why.
 void write_run(const std::filesystem::path& directory, const Ledger& ledger, const RunInfo& info);
 
