@@ -17,6 +17,7 @@
 #include "content/scene/gltf/nodes.h"
 #include "content/scene/scene.h"
 #include "content/scene/units.h"
+#include "content/text.h"
 
 namespace probewalk {
 namespace {
@@ -124,6 +125,18 @@ void warn_of_motion(const gltf::Document& document, Scene& scene) {
   }
 }
 
+// A scene of thousands of flaws must neither scroll everything else away nor overfill the manifest of a pack.
+void bound_warnings(Scene& scene) {
+  constexpr std::size_t kMaxWarnings = 256;
+  constexpr std::size_t kMaxWarningBytes = 4096;
+  if (scene.warnings.size() > kMaxWarnings) {
+    const std::size_t more = scene.warnings.size() - kMaxWarnings;
+    scene.warnings.resize(kMaxWarnings);
+    scene.warnings.push_back(fmt::format("{} more warnings", more));
+  }
+  for (std::string& warning : scene.warnings) shorten_text(warning, kMaxWarningBytes);
+}
+
 }  // namespace
 
 Scene load_scene(const std::filesystem::path& file, const SceneLoadOptions& options) {
@@ -137,7 +150,7 @@ Scene load_scene(const std::filesystem::path& file, const SceneLoadOptions& opti
   gltf::Accessors accessors(document, views);
   const gltf::ImportedMaterials materials = gltf::import_materials(document, views, scene);
   const std::vector<gltf::NodeInstance> nodes = gltf::flatten_nodes(document);
-  gltf::import_geometry(document, nodes, materials, accessors, scene);
+  gltf::import_geometry(document, nodes, materials, views, accessors, scene);
   gltf::import_lights(document, nodes, scene);
   gltf::import_scene_extras(document, scene);
   gltf::import_rooms(document, nodes, options, files, scene);
@@ -155,6 +168,7 @@ Scene load_scene(const std::filesystem::path& file, const SceneLoadOptions& opti
   warn_of_blending(scene);
   scene.light_statement = own_light(scene);
   if (scene.light_statement.empty()) scene.light_statement = add_default_light(scene);
+  bound_warnings(scene);
   return scene;
 }
 

@@ -6,6 +6,7 @@
 
 #include "content/error.h"
 #include "content/pack/pack_io.h"
+#include "content/text.h"
 #include "tools/probewalk/commands.h"
 
 namespace probewalk {
@@ -101,22 +102,6 @@ json to_json(const Manifest& manifest) {
 }
 
 // ---- text
-
-// Names and credits come from anyone: no control character of theirs reaches the terminal. Lines become one.
-std::string printable(const std::string& text) {
-  std::string out;
-  for (std::size_t k = 0; k < text.size(); ++k) {
-    const auto byte = static_cast<unsigned char>(text[k]);
-    const bool second_set = byte == 0xc2 && k + 1 < text.size() && static_cast<unsigned char>(text[k + 1]) < 0xa0;
-    if (second_set) ++k;
-    if (second_set || byte < 0x20 || byte == 0x7f) {
-      if (!out.empty() && out.back() != ' ') out.push_back(' ');
-    } else {
-      out.push_back(text[k]);
-    }
-  }
-  return out;
-}
 
 std::string size_text(std::uint64_t bytes) {
   if (bytes < 1024) return fmt::format("{} B", bytes);

@@ -7,6 +7,7 @@
 #include <exception>
 
 #include "content/error.h"
+#include "content/text.h"
 #include "render/device.h"
 #include "tools/probewalk/commands.h"
 
@@ -75,6 +76,13 @@ int run(int argc, char** argv) {
   return 0;
 }
 
+// Messages quote names and values from files: of those no control character reaches the terminal, nor megabytes.
+void print_error(const std::exception& error) {
+  std::string message = printable(error.what());
+  shorten_text(message, 8192);
+  std::fprintf(stderr, "probewalk: %s\n", message.c_str());
+}
+
 }  // namespace
 }  // namespace probewalk
 
@@ -87,13 +95,13 @@ int main(int argc, char** argv) {
   try {
     return probewalk::run(argc, argv);
   } catch (const probewalk::Error& error) {
-    std::fprintf(stderr, "probewalk: %s\n", error.what());
+    probewalk::print_error(error);
     return static_cast<int>(error.code());
   } catch (const std::bad_alloc&) {
     std::fputs("probewalk: out of memory; close other programs or bake with fewer probes or a lower --resolution\n", stderr);
     return static_cast<int>(probewalk::ExitCode::kBadInput);
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "probewalk: %s\n", error.what());
+    probewalk::print_error(error);
     return static_cast<int>(probewalk::ExitCode::kBadInput);
   }
 }

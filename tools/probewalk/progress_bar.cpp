@@ -7,6 +7,7 @@
 #include <mutex>
 #include <string>
 
+#include "content/text.h"
 #include "tools/probewalk/commands.h"
 
 namespace probewalk {
@@ -66,7 +67,8 @@ class ProgressBar final : public Progress {
   void note(std::string_view line) override {
     std::lock_guard lock(mutex_);
     finish_line();
-    std::fprintf(stderr, "%.*s\n", static_cast<int>(line.size()), line.data());
+    // Warnings quote names from the scene's file.
+    std::fprintf(stderr, "%s\n", printable(std::string(line)).c_str());
   }
 
   bool cancelled() const override { return g_interrupted.load(std::memory_order_relaxed); }

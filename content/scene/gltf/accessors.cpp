@@ -2,78 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cstring>
-
 #include "content/error.h"
+#include "content/scene/gltf/components.h"
 #include "content/scene/gltf/limits.h"
 
 namespace probewalk::gltf {
 namespace {
-
-template <typename T>
-T load(const std::uint8_t* bytes) {
-  T value;
-  std::memcpy(&value, bytes, sizeof(T));
-  return value;
-}
-
-std::uint64_t component_bytes(int type) {
-  switch (type) {
-    case TINYGLTF_COMPONENT_TYPE_BYTE:
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
-      return 1;
-    case TINYGLTF_COMPONENT_TYPE_SHORT:
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
-      return 2;
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
-    case TINYGLTF_COMPONENT_TYPE_FLOAT:
-      return 4;
-    default:
-      return 0;
-  }
-}
-
-float to_float(const std::uint8_t* bytes, int type, bool normalized) {
-  float value = 0.0f;
-  float scale = 1.0f;
-  switch (type) {
-    case TINYGLTF_COMPONENT_TYPE_BYTE:
-      value = static_cast<float>(load<std::int8_t>(bytes));
-      scale = 127.0f;
-      break;
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
-      value = static_cast<float>(load<std::uint8_t>(bytes));
-      scale = 255.0f;
-      break;
-    case TINYGLTF_COMPONENT_TYPE_SHORT:
-      value = static_cast<float>(load<std::int16_t>(bytes));
-      scale = 32767.0f;
-      break;
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
-      value = static_cast<float>(load<std::uint16_t>(bytes));
-      scale = 65535.0f;
-      break;
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
-      value = static_cast<float>(load<std::uint32_t>(bytes));
-      scale = 4294967295.0f;
-      break;
-    default:
-      return load<float>(bytes);
-  }
-  return normalized ? std::max(value / scale, -1.0f) : value;
-}
-
-std::uint32_t to_index(const std::uint8_t* bytes, int type) {
-  switch (type) {
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
-      return load<std::uint8_t>(bytes);
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
-      return load<std::uint16_t>(bytes);
-    default:
-      return load<std::uint32_t>(bytes);
-  }
-}
 
 bool is_index_type(int type) {
   return type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE || type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT ||
@@ -90,6 +24,13 @@ const tinygltf::Accessor& Accessors::find(int accessor) const {
 }
 
 std::size_t Accessors::count(int accessor) const { return find(accessor).count; }
+
+bool Accessors::normalized(int accessor) const { return find(accessor).normalized; }
+
+bool Accessors::has_data(int accessor) const {
+  if (accessor < 0 || static_cast<std::size_t>(accessor) >= document_.model.accessors.size()) return false;
+  return find(accessor).bufferView >= 0 || find(accessor).sparse.isSparse;
+}
 
 const std::uint8_t* Accessors::elements(int accessor, int view, std::uint64_t offset, std::uint64_t count,
                                         std::uint64_t element_bytes, std::uint64_t& stride) {

@@ -13,6 +13,9 @@ class Accessors {
   Accessors(const Document& document, BufferViews& views) : document_(document), views_(views) {}
 
   std::size_t count(int accessor) const;
+  bool normalized(int accessor) const;
+  // False for an accessor whose values are zero or come from elsewhere (KHR_draco_mesh_compression), or that is none.
+  bool has_data(int accessor) const;
   // `count(accessor) * components` values, normalised integers as in the glTF specification (section 3.6.2.2). An
   // accessor of another type (VEC2 for VEC3, ...) throws BadInput; VEC3 for VEC4 and the reverse are not converted.
   std::vector<float> floats(int accessor, int components);

@@ -9,6 +9,7 @@
 
 #include "content/error.h"
 #include "content/scene/gltf/limits.h"
+#include "content/text.h"
 
 namespace probewalk::gltf {
 namespace {
@@ -112,7 +113,7 @@ void rooms_from_file(const std::filesystem::path& file, SourceFiles& files, Scen
     if (!is_id(room.id)) throw BadInput(fmt::format("{}: id '{}' is not of [a-z0-9-], 1 to 64 long", where, room.id));
     if (!taken.insert(room.id).second) throw BadInput(fmt::format("{}: id '{}' is used twice", where, room.id));
     if (room.name.empty()) room.name = room.id;
-    if (room.name.size() > kMaxNameLength) room.name.resize(kMaxNameLength);
+    shorten_text(room.name, kMaxNameLength);
     const std::optional<glm::dvec3> lower = vector_member(where, entry, "min");
     const std::optional<glm::dvec3> upper = vector_member(where, entry, "max");
     if (!lower || !upper) throw BadInput(where + ": needs 'min' and 'max'");
@@ -132,7 +133,7 @@ void rooms_from_nodes(const Document& document, const std::vector<NodeInstance>&
     std::string name = extras ? string_member(*extras, "probewalk_room") : "";
     if (name.empty()) continue;
     if (scene.rooms.size() == kMaxRooms) throw BadInput(fmt::format("{}: more than {} rooms", document.file, kMaxRooms));
-    if (name.size() > kMaxNameLength) name.resize(kMaxNameLength);
+    shorten_text(name, kMaxNameLength);
     const std::string where = fmt::format("{}: room '{}' of node {}", document.file, name, instance.node);
     const std::optional<glm::dvec3> lower = vector_member(where, *extras, "probewalk_room_min");
     const std::optional<glm::dvec3> upper = vector_member(where, *extras, "probewalk_room_max");
@@ -192,12 +193,13 @@ void import_credits(const Document& document, const SceneLoadOptions& options, S
   const auto add = [&](const std::string& part) {
     if (!part.empty()) parts.push_back(part);
   };
+  add(string_member(*asset, "extras"));  // allowed to be any value, and a line of text is what some write
   if (const json* extras = find_object(*asset, "extras")) {
     for (const char* key : {"title", "author", "license", "source"}) add(string_member(*extras, key));
   }
   add(string_member(*asset, "copyright"));
   scene.credits = fmt::format("{}", fmt::join(parts, ", "));
-  if (scene.credits.size() > kMaxCreditsBytes) scene.credits.resize(kMaxCreditsBytes);
+  shorten_text(scene.credits, kMaxCreditsBytes);
 }
 
 }  // namespace probewalk::gltf

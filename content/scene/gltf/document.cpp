@@ -15,9 +15,10 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::array<std::string_view, 6> kKnownExtensions{
-    "EXT_meshopt_compression",         "KHR_lights_punctual", "KHR_materials_emissive_strength",
-    "KHR_materials_unlit",             "KHR_mesh_quantization", "KHR_texture_transform"};
+constexpr std::array<std::string_view, 9> kKnownExtensions{
+    "EXT_mesh_gpu_instancing",    "EXT_meshopt_compression", "EXT_texture_webp",
+    "KHR_draco_mesh_compression", "KHR_lights_punctual",     "KHR_materials_emissive_strength",
+    "KHR_materials_unlit",        "KHR_mesh_quantization",   "KHR_texture_transform"};
 
 // The JSON text and the binary chunk of either form of file.
 struct Container {

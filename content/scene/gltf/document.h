@@ -12,7 +12,7 @@
 
 namespace probewalk::gltf {
 
-// An encoded image (PNG, JPEG), or why there is none.
+// An encoded image (PNG, JPEG, WebP), or why there is none.
 struct EncodedImage {
   std::string name;             // URI or name, for messages
   std::optional<Bytes> bytes;   // absent: the file is missing or its URI is refused; `problem` says which

@@ -2,42 +2,62 @@
 
 #include <fmt/format.h>
 #include <stb_image.h>
+#include <webp/decode.h>
 
 #include <algorithm>
 #include <array>
 #include <limits>
 #include <memory>
+#include <string_view>
 
 #include "content/scene/gltf/limits.h"
 
 namespace probewalk::gltf {
 namespace {
 
-constexpr std::array<std::uint8_t, 8> kPngMagic{0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
-constexpr std::array<std::uint8_t, 3> kJpegMagic{0xff, 0xd8, 0xff};
+constexpr std::string_view kPngMagic("\x89PNG\r\n\x1a\n", 8);
+constexpr std::string_view kJpegMagic("\xff\xd8\xff", 3);
 
-template <std::size_t N>
-bool starts_with(std::span<const std::uint8_t> bytes, const std::array<std::uint8_t, N>& magic) {
-  return bytes.size() >= N && std::equal(magic.begin(), magic.end(), bytes.begin());
+bool is_webp(std::string_view text) {
+  return text.starts_with("RIFF") && text.size() >= 12 && text.substr(8, 4) == "WEBP";
 }
 
 struct FreePixels {
   void operator()(stbi_uc* pixels) const { stbi_image_free(pixels); }
 };
 
-}  // namespace
+std::string size_problem(int width, int height) {
+  if (width >= 1 && height >= 1 && width <= kMaxImageSide_px && height <= kMaxImageSide_px) return "";
+  return fmt::format("is {} x {} pixels, more than {} a side", width, height, kMaxImageSide_px);
+}
 
-DecodedImage decode_image(std::span<const std::uint8_t> encoded) {
+std::size_t rgba_bytes(int width, int height) {
+  return static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * 4;
+}
+
+DecodedImage decode_webp(std::span<const std::uint8_t> encoded) {
   DecodedImage image;
-  // stb would also try formats that glTF does not have, and whose decoders nobody hardened.
-  if (!starts_with(encoded, kPngMagic) && !starts_with(encoded, kJpegMagic)) {
-    image.problem = "is neither PNG nor JPEG";
-    return image;
+  WebPBitstreamFeatures features;
+  if (WebPGetFeatures(encoded.data(), encoded.size(), &features) != VP8_STATUS_OK) {
+    image.problem = "is damaged";
+  } else if (features.has_animation) {
+    image.problem = "is an animation";
+  } else {
+    image.problem = size_problem(features.width, features.height);
   }
-  if (encoded.size() > static_cast<std::size_t>(std::numeric_limits<int>::max())) {
-    image.problem = "is larger than 2 GiB";
-    return image;
+  if (!image.problem.empty()) return image;
+  Texture::Level level{features.width, features.height, {}};
+  level.rgba.resize(rgba_bytes(features.width, features.height));
+  if (!WebPDecodeRGBAInto(encoded.data(), encoded.size(), level.rgba.data(), level.rgba.size(), features.width * 4)) {
+    image.problem = "is damaged";
+  } else {
+    image.level = std::move(level);
   }
+  return image;
+}
+
+DecodedImage decode_png_or_jpeg(std::span<const std::uint8_t> encoded) {
+  DecodedImage image;
   const int size = static_cast<int>(encoded.size());
   int width = 0;
   int height = 0;
@@ -46,10 +66,8 @@ DecodedImage decode_image(std::span<const std::uint8_t> encoded) {
     image.problem = "is damaged";
     return image;
   }
-  if (width < 1 || height < 1 || width > kMaxImageSide_px || height > kMaxImageSide_px) {
-    image.problem = fmt::format("is {} x {} pixels, more than {} a side", width, height, kMaxImageSide_px);
-    return image;
-  }
+  image.problem = size_problem(width, height);
+  if (!image.problem.empty()) return image;
   const std::unique_ptr<stbi_uc, FreePixels> pixels(
       stbi_load_from_memory(encoded.data(), size, &width, &height, &channels, STBI_rgb_alpha));
   if (!pixels) {
@@ -58,9 +76,19 @@ DecodedImage decode_image(std::span<const std::uint8_t> encoded) {
   }
   image.level.width_px = width;
   image.level.height_px = height;
-  const std::size_t bytes = static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * 4;
-  image.level.rgba.assign(pixels.get(), pixels.get() + bytes);
+  image.level.rgba.assign(pixels.get(), pixels.get() + rgba_bytes(width, height));
   return image;
+}
+
+}  // namespace
+
+DecodedImage decode_image(std::span<const std::uint8_t> encoded) {
+  const std::string_view text(reinterpret_cast<const char*>(encoded.data()), encoded.size());
+  if (encoded.size() > static_cast<std::size_t>(std::numeric_limits<int>::max())) return {{}, "is larger than 2 GiB"};
+  if (is_webp(text)) return decode_webp(encoded);
+  // stb would also try formats that glTF does not have, and whose decoders nobody hardened.
+  if (text.starts_with(kPngMagic) || text.starts_with(kJpegMagic)) return decode_png_or_jpeg(encoded);
+  return {{}, "is neither PNG nor JPEG nor WebP"};
 }
 
 }  // namespace probewalk::gltf

@@ -1,4 +1,4 @@
-// Encoded pictures (PNG, JPEG) to 8-bit RGBA.
+// Encoded pictures (PNG, JPEG, WebP) to 8-bit RGBA.
 #pragma once
 
 #include <span>
@@ -14,7 +14,8 @@ struct DecodedImage {
   std::string problem;   // why it could not be decoded
 };
 
-// Anything but PNG and JPEG is refused, as is a side above kMaxImageSide_px. 16-bit channels are reduced to 8.
+// Anything else is refused, as are animations and sides above kMaxImageSide_px. Grey becomes equal channels, palettes
+// their colours, 16-bit channels their upper 8.
 DecodedImage decode_image(std::span<const std::uint8_t> encoded);
 
 }  // namespace probewalk::gltf

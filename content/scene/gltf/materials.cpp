@@ -1,11 +1,14 @@
 #include "content/scene/gltf/materials.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <span>
 #include <tuple>
+#include <utility>
 
 #include "content/error.h"
 #include "content/scene/gltf/images.h"
@@ -32,53 +35,45 @@ class TextureImporter {
   TextureImporter(const Document& document, BufferViews& views, Scene& scene)
       : document_(document), views_(views), scene_(scene) {}
 
-  // Index into Scene::textures, or -1 (with a warning) when the picture cannot be had.
-  int import(int texture, bool weight_by_alpha) {
+  // Index into Scene::textures, or -1 when the picture cannot be had; `instead` then says in the warning what is shown.
+  int import(int texture, bool weight_by_alpha, const std::string& instead) {
     const tinygltf::Texture& description = find(texture);
-    if (description.source < 0) {
-      warn(fmt::format("texture {} has no PNG or JPEG", texture));
-      return -1;
-    }
     tinygltf::Sampler sampler;
     if (description.sampler >= 0) sampler = find_sampler(texture, description.sampler);
-    const Key key{description.source, wrap_mode(sampler.wrapS), wrap_mode(sampler.wrapT), weight_by_alpha};
-    const auto known = textures_.find(key);
-    if (known != textures_.end()) return known->second;
-
-    const DecodedImage image = decode(description.source);
-    int index = -1;
-    if (!image.problem.empty()) {
-      warn(fmt::format("image '{}' {}", document_.images[description.source].name, image.problem));
-    } else {
-      count_texels(image.level);
-      Texture result;
-      result.name = document_.images[description.source].name;
-      result.wrap_u = std::get<1>(key);
-      result.wrap_v = std::get<2>(key);
-      result.levels.push_back(image.level);
-      build_mip_chain(result, weight_by_alpha);
-      index = static_cast<int>(scene_.textures.size());
-      scene_.textures.push_back(std::move(result));
+    const std::vector<int> sources = find_sources(texture, description);
+    std::string problem = sources.empty() ? fmt::format("texture {} has no PNG, JPEG or WebP", texture) : "";
+    for (const int source : sources) {
+      const int index = import_image(
+          {source, wrap_mode(sampler.wrapS), wrap_mode(sampler.wrapT), weight_by_alpha});
+      if (index >= 0) return index;
+      if (problem.empty()) problem = problems_[source];
     }
-    textures_.emplace(key, index);
-    return index;
+    replacements_[problem].push_back(instead);
+    return -1;
   }
 
-  // Mean of two channels of a picture, (1, 1) when it cannot be had.
-  glm::vec2 mean(int texture, int first_channel, int second_channel) {
-    const tinygltf::Texture& description = find(texture);
-    if (description.source < 0) return glm::vec2(1.0f);
-    const DecodedImage image = decode(description.source);
-    if (!image.problem.empty()) return glm::vec2(1.0f);
-    std::uint64_t first = 0;
-    std::uint64_t second = 0;
-    const std::vector<std::uint8_t>& rgba = image.level.rgba;
-    for (std::size_t i = 0; i < rgba.size(); i += 4) {
-      first += rgba[i + first_channel];
-      second += rgba[i + second_channel];
+  // Mean of roughness and metalness of a picture, (1, 1) when it cannot be had.
+  glm::vec2 mean_roughness_metalness(int texture) {
+    for (const int source : find_sources(texture, find(texture))) {
+      const auto known = means_.find(source);
+      if (known != means_.end()) return known->second;
+      if (problems_.contains(source)) continue;
+      const DecodedImage image = decode(source);
+      if (image.problem.empty()) return means_.emplace(source, mean(image.level.rgba)).first->second;
+      note_problem(source, image.problem);
     }
-    const double total = 255.0 * static_cast<double>(rgba.size() / 4);
-    return {static_cast<double>(first) / total, static_cast<double>(second) / total};
+    return glm::vec2(1.0f);
+  }
+
+  // One warning a picture that is not there, with all it was wanted for.
+  void warn() {
+    constexpr std::size_t kNamed = 8;
+    for (const auto& [problem, instead] : replacements_) {
+      const std::size_t named = std::min(instead.size(), kNamed);
+      std::string uses = fmt::format("{}", fmt::join(std::span(instead).first(named), ", "));
+      if (instead.size() > named) uses += fmt::format(" and {} more", instead.size() - named);
+      scene_.warnings.push_back(fmt::format("{}; shown instead: {}", problem, uses));
+    }
   }
 
  private:
@@ -89,11 +84,24 @@ class TextureImporter {
       throw BadInput(fmt::format("{}: texture {} does not exist", document_.file, texture));
     }
     const tinygltf::Texture& description = document_.model.textures[texture];
-    if (description.source >= 0 && static_cast<std::size_t>(description.source) >= document_.images.size()) {
-      throw BadInput(fmt::format("{}: texture {} refers to image {}, which does not exist", document_.file, texture,
-                                 description.source));
-    }
     return description;
+  }
+
+  // Indices of the pictures that a texture may be made of, the best first.
+  std::vector<int> find_sources(int texture, const tinygltf::Texture& description) const {
+    std::vector<int> sources;
+    const auto webp = description.extensions.find("EXT_texture_webp");
+    if (webp != description.extensions.end() && webp->second.IsObject() && webp->second.Get("source").IsInt()) {
+      sources.push_back(webp->second.Get("source").GetNumberAsInt());
+    }
+    if (description.source >= 0) sources.push_back(description.source);
+    for (const int source : sources) {
+      if (source < 0 || static_cast<std::size_t>(source) >= document_.images.size()) {
+        throw BadInput(fmt::format("{}: texture {} refers to image {}, which does not exist", document_.file, texture,
+                                   source));
+      }
+    }
+    return sources;
   }
 
   const tinygltf::Sampler& find_sampler(int texture, int sampler) const {
@@ -102,6 +110,45 @@ class TextureImporter {
                                  sampler));
     }
     return document_.model.samplers[sampler];
+  }
+
+  // Index into Scene::textures, or -1 with an entry in problems_.
+  int import_image(const Key& key) {
+    const auto known = textures_.find(key);
+    if (known != textures_.end()) return known->second;
+    const int source = std::get<0>(key);
+    DecodedImage image = decode(source);
+    int index = -1;
+    if (!image.problem.empty()) {
+      note_problem(source, image.problem);
+    } else {
+      count_texels(image.level);
+      Texture result;
+      result.name = document_.images[source].name;
+      result.wrap_u = std::get<1>(key);
+      result.wrap_v = std::get<2>(key);
+      result.levels.push_back(std::move(image.level));
+      build_mip_chain(result, std::get<3>(key));
+      index = static_cast<int>(scene_.textures.size());
+      scene_.textures.push_back(std::move(result));
+    }
+    textures_.emplace(key, index);
+    return index;
+  }
+
+  void note_problem(int source, const std::string& problem) {
+    problems_[source] = fmt::format("image '{}' {}", document_.images[source].name, problem);
+  }
+
+  static glm::vec2 mean(const std::vector<std::uint8_t>& rgba) {
+    std::uint64_t green = 0;
+    std::uint64_t blue = 0;
+    for (std::size_t i = 0; i < rgba.size(); i += 4) {
+      green += rgba[i + 1];
+      blue += rgba[i + 2];
+    }
+    const double total = 255.0 * static_cast<double>(rgba.size() / 4);
+    return {static_cast<double>(green) / total, static_cast<double>(blue) / total};
   }
 
   DecodedImage decode(int source) {
@@ -118,12 +165,13 @@ class TextureImporter {
     }
   }
 
-  void warn(const std::string& what) { scene_.warnings.push_back(what + "; the plain colour is used"); }
-
   const Document& document_;
   BufferViews& views_;
   Scene& scene_;
   std::map<Key, int> textures_;
+  std::map<int, glm::vec2> means_;
+  std::map<int, std::string> problems_;                        // by picture
+  std::map<std::string, std::vector<std::string>> replacements_;  // by problem
   std::uint64_t texels_ = 0;
 };
 
@@ -189,13 +237,15 @@ Material convert(const Document& document, const tinygltf::Material& source, Tex
   material.metallic = within(pbr.metallicFactor, 0.0, 1.0, 1.0);
   material.roughness = within(pbr.roughnessFactor, 0.0, 1.0, 1.0);
   if (pbr.metallicRoughnessTexture.index >= 0) {
-    const glm::vec2 mean = textures.mean(pbr.metallicRoughnessTexture.index, 1, 2);
+    const glm::vec2 mean = textures.mean_roughness_metalness(pbr.metallicRoughnessTexture.index);
     material.roughness *= mean.x;
     material.metallic *= mean.y;
   }
   if (pbr.baseColorTexture.index >= 0) {
-    material.base_color.texture =
-        textures.import(pbr.baseColorTexture.index, material.alpha_mode != AlphaMode::kOpaque);
+    const glm::vec4& plain = material.base_color_factor;
+    material.base_color.texture = textures.import(
+        pbr.baseColorTexture.index, material.alpha_mode != AlphaMode::kOpaque,
+        fmt::format("base colour ({:g}, {:g}, {:g}) of material '{}'", plain.r, plain.g, plain.b, source.name));
     uvs[0] = uv_source(pbr.baseColorTexture);
   }
   for (int c = 0; c < 3 && c < static_cast<int>(source.emissiveFactor.size()); ++c) {
@@ -203,7 +253,10 @@ Material convert(const Document& document, const tinygltf::Material& source, Tex
     material.emissive_cd_m2[c] = within(source.emissiveFactor[c], 0.0, 1e6, 0.0) * emissive_unit_cd_m2(source);
   }
   if (source.emissiveTexture.index >= 0) {
-    material.emissive.texture = textures.import(source.emissiveTexture.index, false);
+    material.emissive.texture = textures.import(source.emissiveTexture.index, false,
+                                                fmt::format("no emission of material '{}'", source.name));
+    // Such a picture mostly darkens all but a few lamps; without it the whole surface would shine.
+    if (material.emissive.texture < 0) material.emissive_cd_m2 = glm::vec3(0.0f);
     uvs[1] = uv_source(source.emissiveTexture);
     const bool shared = material.base_color.texture < 0 || uvs[0] == uvs[1];
     if (material.base_color.texture < 0) uvs[0] = uvs[1];
@@ -222,6 +275,7 @@ ImportedMaterials import_materials(const Document& document, BufferViews& views,
     scene.materials.push_back(convert(document, source, textures, uvs));
     imported.uvs.push_back(uvs);
   }
+  textures.warn();
   // The specification's default is a rough white metal, which no author who left the material out has in mind.
   Material fallback;
   fallback.name = "no material";

@@ -7,6 +7,7 @@
 #include <glm/gtc/type_ptr.hpp>
 
 #include "content/error.h"
+#include "content/scene/gltf/limits.h"
 
 namespace probewalk::gltf {
 namespace {
@@ -64,9 +65,17 @@ std::vector<int> root_nodes(const Document& document) {
 std::vector<NodeInstance> flatten_nodes(const Document& document) {
   const std::vector<tinygltf::Node>& nodes = document.model.nodes;
   std::vector<NodeInstance> result;
-  std::vector<NodeInstance> pending;
+  struct Pending {
+    NodeInstance instance;
+    std::size_t depth;
+  };
+  std::vector<Pending> pending;
   std::vector<bool> reached(nodes.size(), false);
-  const auto push = [&](const std::vector<int>& children, const glm::dmat4& world_from_parent) {
+  const auto push = [&](const std::vector<int>& children, const glm::dmat4& world_from_parent, std::size_t depth) {
+    if (!children.empty() && depth > kMaxNodeDepth) {
+      throw BadInput(fmt::format("{}: node {} lies more than {} nodes below a root; flatten its hierarchy",
+                                 document.file, children.front(), kMaxNodeDepth));
+    }
     for (auto child = children.rbegin(); child != children.rend(); ++child) {
       if (*child < 0 || static_cast<std::size_t>(*child) >= nodes.size()) {
         throw BadInput(fmt::format("{}: node {} does not exist, there are {}", document.file, *child, nodes.size()));
@@ -75,14 +84,15 @@ std::vector<NodeInstance> flatten_nodes(const Document& document) {
         throw BadInput(fmt::format("{}: node {} is reached twice; nodes must form trees", document.file, *child));
       }
       reached[*child] = true;
-      pending.push_back({*child, world_from_parent * local_matrix(document.file, *child, nodes[*child])});
+      pending.push_back({{*child, world_from_parent * local_matrix(document.file, *child, nodes[*child])}, depth});
     }
   };
-  push(root_nodes(document), glm::dmat4(1.0));
+  push(root_nodes(document), glm::dmat4(1.0), 0);
   while (!pending.empty()) {
-    result.push_back(pending.back());
+    const Pending next = pending.back();
     pending.pop_back();
-    push(nodes[result.back().node].children, result.back().world_from_node);
+    result.push_back(next.instance);
+    push(nodes[next.instance.node].children, next.instance.world_from_node, next.depth + 1);
   }
   return result;
 }

@@ -69,11 +69,11 @@ TEST(GltfMaterials, AMissingOrDamagedPictureCostsItsColourOnly) {
   for (const char* uri : {"absent.png", "data:image/png;base64,iVBORw0KGgo=", "data:image/gif;base64,R0lGODlhAQABAA=="}) {
     GltfScene small = GltfScene::floor();
     const int texture = small.add_texture(png_row(kRedThenClear));
-    small.set_material({{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", texture}}}}}});
+    small.set_material({{"name", "wall"}, {"pbrMetallicRoughness", {{"baseColorTexture", {{"index", texture}}}}}});
     small.json["images"][0] = {{"uri", uri}};
     const Scene scene = small.load();
     EXPECT_EQ(scene.materials[0].base_color.texture, -1) << uri;
-    EXPECT_THAT(scene.warnings, Contains(HasSubstr("the plain colour is used"))) << uri;
+    EXPECT_THAT(scene.warnings, Contains(HasSubstr("shown instead: base colour (1, 1, 1) of material 'wall'"))) << uri;
   }
 }
 

@@ -29,8 +29,12 @@ void append_chunk(std::vector<std::uint8_t>& png, const char* type, const std::v
 }  // namespace
 
 std::vector<std::uint8_t> png_row(const std::vector<std::uint8_t>& rgba) {
+  return png_row(static_cast<int>(rgba.size() / 4), rgba, PngForm{});
+}
+
+std::vector<std::uint8_t> png_row(int width, const std::vector<std::uint8_t>& row, const PngForm& form) {
   std::vector<std::uint8_t> raw{0};  // filter: none
-  raw.insert(raw.end(), rgba.begin(), rgba.end());
+  raw.insert(raw.end(), row.begin(), row.end());
   const auto length = static_cast<std::uint16_t>(raw.size());
   std::vector<std::uint8_t> zlib{0x78, 0x01, 0x01, static_cast<std::uint8_t>(length & 255),
                                  static_cast<std::uint8_t>(length >> 8), static_cast<std::uint8_t>(~length & 255),
@@ -44,11 +48,15 @@ std::vector<std::uint8_t> png_row(const std::vector<std::uint8_t>& rgba) {
   }
   append_word(zlib, b << 16 | a);
   std::vector<std::uint8_t> header;
-  append_word(header, static_cast<std::uint32_t>(rgba.size() / 4));
+  append_word(header, static_cast<std::uint32_t>(width));
   append_word(header, 1);
-  header.insert(header.end(), {8, 6, 0, 0, 0});
+  header.push_back(static_cast<std::uint8_t>(form.bit_depth));
+  header.push_back(static_cast<std::uint8_t>(form.color_type));
+  header.insert(header.end(), {0, 0, 0});
   std::vector<std::uint8_t> png{0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
   append_chunk(png, "IHDR", header);
+  if (!form.palette.empty()) append_chunk(png, "PLTE", form.palette);
+  if (!form.palette_alpha.empty()) append_chunk(png, "tRNS", form.palette_alpha);
   append_chunk(png, "IDAT", zlib);
   append_chunk(png, "IEND", {});
   return png;

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "content/error.h"
 #include "content/scene/scene.h"
 
 namespace probewalk {
@@ -117,6 +118,16 @@ class GltfScene {
     return load_scene(write(), options);
   }
 
+  // What load() refuses the document with, or "accepted".
+  std::string refusal() const {
+    try {
+      load();
+    } catch (const BadInput& error) {
+      return error.what();
+    }
+    return "accepted";
+  }
+
   // The same document as binary glTF: the first buffer becomes the binary chunk.
   std::string glb() const {
     Json copy = json;
@@ -164,7 +175,17 @@ class GltfScene {
   }
 };
 
-// A PNG of one row of RGBA texels, as stored blocks.
+// How a PNG of one row stores its texels. Colour types: 0 grey, 2 RGB, 3 palette, 4 grey and alpha, 6 RGBA.
+struct PngForm {
+  int bit_depth = 8;
+  int color_type = 6;
+  std::vector<std::uint8_t> palette;        // RGB, with color_type 3
+  std::vector<std::uint8_t> palette_alpha;  // of its first entries
+};
+
+// A PNG of one row of `width` texels, as stored blocks; `row` in its own form.
+std::vector<std::uint8_t> png_row(int width, const std::vector<std::uint8_t>& row, const PngForm& form);
+// The same of 8-bit RGBA.
 std::vector<std::uint8_t> png_row(const std::vector<std::uint8_t>& rgba);
 
 }  // namespace probewalk
