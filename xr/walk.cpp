@@ -87,12 +87,15 @@ class Walk {
         rooms_(pack, *display.device, {options.budget_bytes, options.loader_threads}, progress),
         renderer_(*display.device, rooms_.store(),
                   {.tracer = {.extent_px = source_.view_extent(), .views = source_.view_count()},
-                   .target_format = source_.color_format()}),
+                   .target_format = source_.color_format(),
+                   .depth_format = source_.depth_format()}),
         ledger_({.warmup_frames = std::min(kWarmupFrames, frames.value_or(10 * kWarmupFrames) / 10),
                  .has_deadlines = source_.kind() != "offscreen"}),
         book_(ledger_) {
     settings_.trace = default_dials(pack.manifest().radiance_scale);
     settings_.exposure = exposure_from_ev(static_cast<float>(options.exposure_ev.value_or(pack.manifest().exposure_ev)));
+    settings_.depth = depth_range_of(pack.manifest().bounds);
+    source_.set_depth_range(settings_.depth);
     if (options.record) recorder_ = std::make_unique<PathWriter>(*options.record);
   }
 
