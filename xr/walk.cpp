@@ -84,7 +84,7 @@ class Walk {
         frames_(frames),
         progress_(progress),
         settle_(options.settle.value_or(source_.kind() == "offscreen")),
-        rooms_(pack, *display.device, {options.budget_bytes, options.loader_threads}, progress),
+        rooms_(pack, *display.device, {options.budget_bytes, options.loader_threads, options.report.has_value()}, progress),
         renderer_(*display.device, rooms_.store(),
                   {.tracer = {.extent_px = source_.view_extent(), .views = source_.view_count()},
                    .target_format = source_.color_format(),

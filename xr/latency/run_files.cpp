@@ -39,7 +39,7 @@ void write_run(const std::filesystem::path& directory, const Ledger& ledger, con
   std::filesystem::create_directories(directory, error);
   if (error) throw BadInput("cannot make the directory " + directory.string() + ": " + error.message() + "; choose another");
   write_text(directory / "frames.csv", frames_csv(ledger));
-  write_text(directory / "trace.json", trace_json(ledger));
+  write_text(directory / "trace.json", trace_json(ledger, info.streaming));
   const Run run{name_of(directory), info, ledger};
   write_text(directory / "index.html", report_page({&run, 1}));
   write_text(directory / "summary.json", summary_json(ledger, info));  // last: who finds it finds the others
