@@ -10,6 +10,7 @@
 
 #include "render/buffer.h"
 #include "render/check.h"
+#include "render/depth_pass.h"
 #include "render/resolve.h"
 
 namespace probewalk {
@@ -45,6 +46,8 @@ struct FrameSlot {
   void release_views() {
     for (VkImageView view : layer_views) vkDestroyImageView(device, view, nullptr);
     layer_views.clear();
+    for (VkImageView view : depth_views) vkDestroyImageView(device, view, nullptr);
+    depth_views.clear();
   }
 
   VkDevice device;
@@ -52,7 +55,7 @@ struct FrameSlot {
   std::array<VkCommandBuffer, kCommandBuffers> commands{};
   Buffer constants;  // FrameConstants
   PassTimer timer;
-  std::vector<VkImageView> layer_views;  // of the target
+  std::vector<VkImageView> layer_views, depth_views;  // of the target
   std::uint64_t frame = 0;          // submitted last from this slot
   std::uint64_t last_work = 0;      // timeline value of the slot's last submit
   bool has_untaken_times = false;
@@ -92,6 +95,7 @@ struct FrameRenderer::Impl {
         resolve(owner, tracer.radiance(), dials.target_format),
         clock(owner),
         timeline(make_timeline(owner)) {
+    if (dials.depth_format != VK_FORMAT_UNDEFINED) depth.emplace(owner, tracer.distance(), dials.depth_format);
     for (std::uint32_t i = 0; i < kFrameSlots; ++i) slots.emplace_back(owner);
   }
   ~Impl() {
@@ -165,6 +169,7 @@ struct FrameRenderer::Impl {
   const FrameRendererOptions options;
   const StereoTracer tracer;
   const Resolve resolve;
+  std::optional<DepthPass> depth;
   GpuClock clock;
   VkSemaphore timeline;
   std::deque<FrameSlot> slots;
@@ -185,7 +190,8 @@ FrameRenderer::~FrameRenderer() = default;
 void FrameRenderer::record(const FrameTarget& target) {
   Impl& impl = *impl_;
   const TracerOptions& tracer = impl.options.tracer;
-  if (target.format != impl.options.target_format || target.layers != tracer.views ||
+  if (target.format != impl.options.target_format || target.depth_format != impl.options.depth_format ||
+      (target.depth_image != VK_NULL_HANDLE) != impl.depth.has_value() || target.layers != tracer.views ||
       target.extent.width != tracer.extent_px.width || target.extent.height != tracer.extent_px.height) {
     throw std::logic_error("a frame's target differs from what the renderer was made for");
   }
@@ -200,6 +206,9 @@ void FrameRenderer::record(const FrameTarget& target) {
   slot.release_views();
   for (std::uint32_t layer = 0; layer < target.layers; ++layer) {
     slot.layer_views.push_back(make_layer_view(impl.device, target.image, target.format, layer));
+  }
+  for (std::uint32_t layer = 0; impl.depth && layer < target.layers; ++layer) {
+    slot.depth_views.push_back(make_layer_view(impl.device, target.depth_image, target.depth_format, layer));
   }
   check(vkResetCommandPool(impl.device.handle(), slot.pool, 0), "vkResetCommandPool");
 
@@ -221,6 +230,7 @@ void FrameRenderer::record(const FrameTarget& target) {
   begin_commands(slot.commands[kResolve]);
   slot.timer.begin(slot.commands[kResolve], kResolve);
   impl.resolve.record(slot.commands[kResolve], constants, target, slot.layer_views);
+  if (impl.depth) impl.depth->record(slot.commands[kResolve], constants, target, slot.depth_views);
   slot.timer.end(slot.commands[kResolve], kResolve);
   check(vkEndCommandBuffer(slot.commands[kResolve]), "vkEndCommandBuffer");
   impl.target = target;
@@ -242,6 +252,8 @@ void FrameRenderer::write(std::span<const ViewConstants> views, const FrameSetti
   constants.exposure = settings.exposure;
   constants.fade = settings.fade;
   constants.frame_index = static_cast<std::uint32_t>(impl.next_frame);
+  constants.near_m = settings.depth.near_m;
+  constants.far_m = settings.depth.far_m;
   std::copy(views.begin(), views.end(), constants.view);
   const Buffer& buffer = impl.slot().constants;
   std::memcpy(buffer.mapped(), &constants, sizeof(constants));

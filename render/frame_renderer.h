@@ -1,4 +1,4 @@
-// Draws frames: trace, then resolve. Two frames may be in flight. A frame is
+// Draws frames: trace, then resolve (and depth, where the display takes it). Two frames may be in flight. A frame is
 //   record(target) -> write(constants, the later the better) -> submit()
 // on one thread; the poses are read by the device only when the commands run.
 #pragma once
@@ -10,6 +10,7 @@
 #include <optional>
 #include <span>
 
+#include "render/depth_range.h"
 #include "render/device.h"
 #include "render/frame_target.h"
 #include "render/gpu_clock.h"
@@ -23,6 +24,7 @@ inline constexpr std::uint32_t kFrameSlots = 2;
 struct FrameRendererOptions {
   TracerOptions tracer;
   VkFormat target_format = VK_FORMAT_R8G8B8A8_SRGB;
+  VkFormat depth_format = VK_FORMAT_UNDEFINED;  // no depth is drawn, and nothing is kept for it
 };
 
 // What a frame is drawn with, beside what the store holds.
@@ -30,12 +32,13 @@ struct FrameSettings {
   TraceConstants trace{};   // radiance_scale as the pack says
   float exposure = 1.0f;    // cd/m^2 * exposure = 1 is display white before the tone curve (exposure_from_ev)
   float fade = 0.0f;        // 0 = picture, 1 = black
+  DepthRange depth;         // of the depth image, if there is one
 };
 
 // Device times of a finished frame.
 struct FrameGpuTimes {
   std::uint64_t frame = 0;  // number that submit() returned
-  GpuInterval trace, resolve;
+  GpuInterval trace, resolve;  // depth counts as resolve
   GpuInterval whole;  // from the first pass's begin to the last one's end
   bool calibrated = false;           // on CLOCK_MONOTONIC; else only differences mean something
   std::int64_t max_deviation_ns = 0;
@@ -51,7 +54,7 @@ class FrameRenderer {
   FrameRenderer& operator=(const FrameRenderer&) = delete;
 
   // Waits until the frame before the last has finished, takes in what has streamed, records the passes. The target has
-  // the options' format, and as many layers as there are views.
+  // the options' formats, and as many layers as there are views.
   void record(const FrameTarget& target);
   // Writes the views' poses and the settings; callable again until submit. As many views as in the options.
   void write(std::span<const ViewConstants> views, const FrameSettings& settings);

@@ -20,6 +20,17 @@ VkImageView make_view(const Device& device, VkImage image, VkFormat format, VkIm
   return view;
 }
 
+VkImageMemoryBarrier2 image_barrier(VkImage image, VkImageAspectFlags aspect, VkImageLayout from, VkImageLayout to) {
+  VkImageMemoryBarrier2 barrier{VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2};
+  barrier.oldLayout = from;
+  barrier.newLayout = to;
+  barrier.srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
+  barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
+  barrier.image = image;
+  barrier.subresourceRange = {aspect, 0, 1, 0, VK_REMAINING_ARRAY_LAYERS};
+  return barrier;
+}
+
 }  // namespace
 
 Image::Image(const Device& device, const ImageOptions& options) : device_(&device), options_(options) {
@@ -36,7 +47,7 @@ Image::Image(const Device& device, const ImageOptions& options) : device_(&devic
   allocation.usage = VMA_MEMORY_USAGE_AUTO_PREFER_DEVICE;
   check(vmaCreateImage(device.allocator(), &info, &allocation, &handle_, &allocation_, nullptr), "vmaCreateImage");
   view_ = make_view(device, handle_, options.format, VK_IMAGE_VIEW_TYPE_2D_ARRAY,
-                    {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, options.layers});
+                    {aspect_of(options.format), 0, 1, 0, options.layers});
 }
 
 Image::~Image() {
@@ -54,7 +65,12 @@ void Image::swap(Image& other) noexcept {
 }
 
 VkImageView make_layer_view(const Device& device, VkImage image, VkFormat format, std::uint32_t layer) {
-  return make_view(device, image, format, VK_IMAGE_VIEW_TYPE_2D, {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, layer, 1});
+  return make_view(device, image, format, VK_IMAGE_VIEW_TYPE_2D, {aspect_of(format), 0, 1, layer, 1});
+}
+
+VkImageAspectFlags aspect_of(VkFormat format) {
+  const bool is_depth = format == VK_FORMAT_D32_SFLOAT || format == VK_FORMAT_D16_UNORM;
+  return is_depth ? VK_IMAGE_ASPECT_DEPTH_BIT : VK_IMAGE_ASPECT_COLOR_BIT;
 }
 
 void pipeline_barrier(VkCommandBuffer commands, const VkImageMemoryBarrier2& barrier) {
@@ -65,18 +81,16 @@ void pipeline_barrier(VkCommandBuffer commands, const VkImageMemoryBarrier2& bar
 }
 
 VkImageMemoryBarrier2 colour_barrier(VkImage image, VkImageLayout from, VkImageLayout to) {
-  VkImageMemoryBarrier2 barrier{VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2};
-  barrier.oldLayout = from;
-  barrier.newLayout = to;
-  barrier.srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
-  barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
-  barrier.image = image;
-  barrier.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, VK_REMAINING_ARRAY_LAYERS};
-  return barrier;
+  return image_barrier(image, VK_IMAGE_ASPECT_COLOR_BIT, from, to);
 }
 
-void transition(VkCommandBuffer commands, VkImage image, VkImageLayout from, VkImageLayout to) {
-  VkImageMemoryBarrier2 barrier = colour_barrier(image, from, to);
+VkImageMemoryBarrier2 depth_barrier(VkImage image, VkImageLayout from, VkImageLayout to) {
+  return image_barrier(image, VK_IMAGE_ASPECT_DEPTH_BIT, from, to);
+}
+
+void transition(VkCommandBuffer commands, VkImage image, VkImageLayout from, VkImageLayout to,
+                VkImageAspectFlags aspect) {
+  VkImageMemoryBarrier2 barrier = image_barrier(image, aspect, from, to);
   barrier.srcStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
   barrier.srcAccessMask = VK_ACCESS_2_MEMORY_WRITE_BIT;
   barrier.dstStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;

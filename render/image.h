@@ -47,11 +47,16 @@ class Image {
 // A view of one layer (VK_IMAGE_VIEW_TYPE_2D). The caller destroys it.
 VkImageView make_layer_view(const Device& device, VkImage image, VkFormat format, std::uint32_t layer);
 
-// A barrier on all layers of a colour image, stages and accesses still to be filled in; and its recording.
+// VK_IMAGE_ASPECT_DEPTH_BIT of the depth formats that are drawn into, VK_IMAGE_ASPECT_COLOR_BIT of the others.
+VkImageAspectFlags aspect_of(VkFormat format);
+
+// A barrier on all layers of a colour or depth image, stages and accesses still to be filled in; and its recording.
 VkImageMemoryBarrier2 colour_barrier(VkImage image, VkImageLayout from, VkImageLayout to);
+VkImageMemoryBarrier2 depth_barrier(VkImage image, VkImageLayout from, VkImageLayout to);
 void pipeline_barrier(VkCommandBuffer commands, const VkImageMemoryBarrier2& barrier);
 
 // Layout transition that waits for, and is waited for by, everything: for set-up and read-back, not for frames.
-void transition(VkCommandBuffer commands, VkImage image, VkImageLayout from, VkImageLayout to);
+void transition(VkCommandBuffer commands, VkImage image, VkImageLayout from, VkImageLayout to,
+                VkImageAspectFlags aspect = VK_IMAGE_ASPECT_COLOR_BIT);
 
 }  // namespace probewalk

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "render/check.h"
+#include "render/image.h"
 
 namespace probewalk {
 namespace {
@@ -147,15 +148,22 @@ Pipeline Pipeline::full_screen(const Device& device, const StorageImageSet& imag
   attachment.colorWriteMask = VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT | VK_COLOR_COMPONENT_B_BIT |
                               VK_COLOR_COMPONENT_A_BIT;
   VkPipelineColorBlendStateCreateInfo blend{VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO};
-  blend.attachmentCount = 1;
+  const bool is_depth = aspect_of(format) == VK_IMAGE_ASPECT_DEPTH_BIT;
+  blend.attachmentCount = is_depth ? 0 : 1;
   blend.pAttachments = &attachment;
+  // Depth is written only where the test is on, so it is on and passes always.
+  VkPipelineDepthStencilStateCreateInfo depth{VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO};
+  depth.depthTestEnable = VK_TRUE;
+  depth.depthWriteEnable = VK_TRUE;
+  depth.depthCompareOp = VK_COMPARE_OP_ALWAYS;
   const std::array dynamic_states{VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR};
   VkPipelineDynamicStateCreateInfo dynamic{VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO};
   dynamic.dynamicStateCount = static_cast<std::uint32_t>(dynamic_states.size());
   dynamic.pDynamicStates = dynamic_states.data();
   VkPipelineRenderingCreateInfo rendering{VK_STRUCTURE_TYPE_PIPELINE_RENDERING_CREATE_INFO};
-  rendering.colorAttachmentCount = 1;
+  rendering.colorAttachmentCount = is_depth ? 0 : 1;
   rendering.pColorAttachmentFormats = &format;
+  rendering.depthAttachmentFormat = is_depth ? format : VK_FORMAT_UNDEFINED;
 
   VkGraphicsPipelineCreateInfo info{VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO};
   info.pNext = &rendering;
@@ -166,6 +174,7 @@ Pipeline Pipeline::full_screen(const Device& device, const StorageImageSet& imag
   info.pViewportState = &viewport;
   info.pRasterizationState = &raster;
   info.pMultisampleState = &multisample;
+  info.pDepthStencilState = is_depth ? &depth : nullptr;
   info.pColorBlendState = &blend;
   info.pDynamicState = &dynamic;
   info.layout = result.layout_;

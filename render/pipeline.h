@@ -43,7 +43,7 @@ class Pipeline {
   // `constants` are the specialisation constants 0, 1, ...
   static Pipeline compute(const Device& device, const StorageImageSet* images, std::span<const std::uint32_t> spirv,
                           std::initializer_list<std::uint32_t> constants);
-  // A full-screen triangle onto one colour attachment, without blending.
+  // A full-screen triangle onto one attachment: of colour, without blending, or of depth, without a test.
   static Pipeline full_screen(const Device& device, const StorageImageSet& images,
                               std::span<const std::uint32_t> vertex_spirv,
                               std::span<const std::uint32_t> fragment_spirv, VkFormat format);

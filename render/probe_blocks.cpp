@@ -9,17 +9,6 @@
 namespace probewalk {
 namespace {
 
-constexpr std::uint64_t kAlignment = 16;
-
-std::uint64_t aligned_bytes(const std::vector<std::uint32_t>& words) {
-  const std::uint64_t bytes = words.size() * sizeof(std::uint32_t);
-  return (bytes + kAlignment - 1) / kAlignment * kAlignment;
-}
-
-std::uint64_t probe_bytes(const DeviceProbe& probe) {
-  return aligned_bytes(probe.geometry) + aligned_bytes(probe.radiance);
-}
-
 std::uint64_t largest_buffer_bytes(const Device& device) {
   VkPhysicalDeviceMaintenance4Properties sizes{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MAINTENANCE_4_PROPERTIES};
   VkPhysicalDeviceMaintenance3Properties allocations{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MAINTENANCE_3_PROPERTIES, &sizes};
@@ -33,7 +22,7 @@ std::vector<std::pair<std::size_t, std::size_t>> split(const std::vector<DeviceP
   std::vector<std::pair<std::size_t, std::size_t>> ranges;
   std::uint64_t bytes = 0;
   for (std::size_t i = 0; i < probes.size(); ++i) {
-    const std::uint64_t more = probe_bytes(probes[i]);
+    const std::uint64_t more = device_bytes(probes[i]);
     if (ranges.empty() || bytes + more > limit) {
       ranges.emplace_back(i, i);
       bytes = 0;
@@ -48,14 +37,14 @@ std::vector<std::pair<std::size_t, std::size_t>> split(const std::vector<DeviceP
 
 std::uint64_t ProbeBlocks::bytes_of(const std::vector<DeviceProbe>& probes) {
   std::uint64_t bytes = 0;
-  for (const DeviceProbe& probe : probes) bytes += probe_bytes(probe);
+  for (const DeviceProbe& probe : probes) bytes += device_bytes(probe);
   return bytes;
 }
 
 ProbeBlocks::ProbeBlocks(const Device& device, const std::vector<DeviceProbe>& probes, bool stage) {
   for (const auto& [first, end] : split(probes, largest_buffer_bytes(device))) {
     std::uint64_t bytes = 0;
-    for (std::size_t i = first; i < end; ++i) bytes += probe_bytes(probes[i]);
+    for (std::size_t i = first; i < end; ++i) bytes += device_bytes(probes[i]);
     blocks_.emplace_back(device, bytes, BufferMemory::kDevice);
     const bool is_staged = stage || blocks_.back().mapped() == nullptr;
     if (is_staged) staged_.push_back({blocks_.size() - 1, Buffer(device, bytes, BufferMemory::kStaging)});
@@ -63,7 +52,7 @@ ProbeBlocks::ProbeBlocks(const Device& device, const std::vector<DeviceProbe>& p
     std::uint64_t offset = 0;
     const auto append = [&](const std::vector<std::uint32_t>& words) {
       std::memcpy(written.mapped() + offset, words.data(), words.size() * sizeof(std::uint32_t));
-      return blocks_.back().address() + std::exchange(offset, offset + aligned_bytes(words));
+      return blocks_.back().address() + std::exchange(offset, offset + device_block_bytes(words));
     };
     for (std::size_t i = first; i < end; ++i) {
       const VkDeviceAddress geometry = append(probes[i].geometry);

@@ -18,7 +18,9 @@ std::uint32_t texel_bytes(VkFormat format) {
     case VK_FORMAT_B8G8R8A8_SRGB:
     case VK_FORMAT_R8G8B8A8_UNORM:
     case VK_FORMAT_B8G8R8A8_UNORM:
+    case VK_FORMAT_D32_SFLOAT:
     case VK_FORMAT_R32_SFLOAT: return 4;
+    case VK_FORMAT_D16_UNORM: return 2;
     case VK_FORMAT_R16G16B16A16_SFLOAT: return 8;
     case VK_FORMAT_R32G32B32A32_UINT: return 16;
     default: throw std::logic_error(fmt::format("no read-back of VkFormat {}", static_cast<int>(format)));
@@ -54,12 +56,13 @@ std::vector<std::byte> read_image(const Device& device, VkImage image, VkImageLa
   run_commands(device, [&](VkCommandBuffer commands) {
     const bool is_copyable = layout == VK_IMAGE_LAYOUT_GENERAL || layout == VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
     const VkImageLayout copy_layout = is_copyable ? layout : VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
-    transition(commands, image, layout, copy_layout);
+    const VkImageAspectFlags aspect = aspect_of(format);
+    transition(commands, image, layout, copy_layout, aspect);
     VkBufferImageCopy region{};
-    region.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, layers};
+    region.imageSubresource = {aspect, 0, 0, layers};
     region.imageExtent = {extent.width, extent.height, 1};
     vkCmdCopyImageToBuffer(commands, image, copy_layout, buffer.handle(), 1, &region);
-    transition(commands, image, copy_layout, layout);
+    transition(commands, image, copy_layout, layout, aspect);
     make_visible_to_cpu(commands);
   });
   buffer.invalidate();

@@ -10,5 +10,6 @@ extern const std::span<const std::uint32_t> k_trace_stereo_comp;
 extern const std::span<const std::uint32_t> k_trace_rays_comp;
 extern const std::span<const std::uint32_t> k_resolve_vert;
 extern const std::span<const std::uint32_t> k_resolve_frag;
+extern const std::span<const std::uint32_t> k_depth_frag;
 
 }  // namespace probewalk::spirv

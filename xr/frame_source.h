@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "render/depth_range.h"
 #include "render/device.h"
 #include "render/frame_target.h"
 
@@ -61,6 +62,10 @@ class FrameSource {
   virtual VkExtent2D view_extent() const = 0;
   virtual std::uint32_t view_count() const = 0;
   virtual VkFormat color_format() const = 0;
+  // Of the depth images in its targets; VK_FORMAT_UNDEFINED where the display takes no depth.
+  virtual VkFormat depth_format() const { return VK_FORMAT_UNDEFINED; }
+  // Between which planes that depth runs; told before the first frame. Nothing to a display that takes none.
+  virtual void set_depth_range(const DepthRange&) {}
   // An image of 0 = nothing to draw into (the display is gone; the next poll says so).
   virtual FrameTarget acquire() = 0;
   // Ends the frame with the views that were rendered (empty = nothing was).

@@ -11,6 +11,7 @@
 
 #include "content/error.h"
 #include "xr/latency/clock.h"
+#include "xr/openxr_enumerate.h"
 #include "xr/path.h"
 
 namespace probewalk {
@@ -19,7 +20,6 @@ namespace {
 constexpr XrViewConfigurationType kStereo = XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO;
 // What the specification guarantees of the history of poses.
 constexpr std::int64_t kPoseHistory_ns = 50'000'000;
-constexpr XrDuration kImageTimeout_ns = 2'000'000'000;
 constexpr auto kExitPatience = std::chrono::milliseconds(500);
 
 glm::dvec3 vec_of(const XrVector3f& v) { return {v.x, v.y, v.z}; }
@@ -32,14 +32,20 @@ XrPosef identity_pose(float y_m = 0.0f) {
   return pose;
 }
 
-template <typename Item, typename Call>
-std::vector<Item> enumerate(const char* name, Item prototype, const Call& call) {
-  std::uint32_t count = 0;
-  check_xr(call(0u, &count, static_cast<Item*>(nullptr)), name);
-  std::vector<Item> items(count, prototype);
-  check_xr(call(count, &count, items.data()), name);
-  items.resize(count);
-  return items;
+// The first of `wanted` that the runtime offers; VK_FORMAT_UNDEFINED when it offers none of them.
+VkFormat first_offered(const std::vector<std::int64_t>& offered, std::initializer_list<VkFormat> wanted) {
+  for (const VkFormat format : wanted) {
+    if (std::ranges::find(offered, format) != offered.end()) return format;
+  }
+  return VK_FORMAT_UNDEFINED;
+}
+
+const char* depth_name(VkFormat format) {
+  switch (format) {
+    case VK_FORMAT_D32_SFLOAT: return "depth as D32_SFLOAT";
+    case VK_FORMAT_D16_UNORM: return "depth as D16_UNORM";
+    default: return "no depth";
+  }
 }
 
 }  // namespace
@@ -50,7 +56,7 @@ OpenXrSource::OpenXrSource(const OpenXrInstance& instance, const Device& device,
   create_session();
   create_space(options.seated);
   input_ = std::make_unique<OpenXrInput>(instance, session_.get());
-  create_swapchain(options.eye_size);
+  create_swapchains(options.eye_size);
 }
 
 void OpenXrSource::create_session() {
@@ -68,7 +74,7 @@ void OpenXrSource::create_session() {
 
 void OpenXrSource::create_space(bool seated) {
   const auto offered =
-      enumerate<XrReferenceSpaceType>("xrEnumerateReferenceSpaces", {}, [&](auto capacity, auto* count, auto* items) {
+      enumerate_xr<XrReferenceSpaceType>("xrEnumerateReferenceSpaces", {}, [&](auto capacity, auto* count, auto* items) {
         return xrEnumerateReferenceSpaces(session_.get(), capacity, count, items);
       });
   const auto has = [&](XrReferenceSpaceType type) { return std::ranges::find(offered, type) != offered.end(); };
@@ -89,8 +95,8 @@ void OpenXrSource::create_space(bool seated) {
   check_xr(xrCreateReferenceSpace(session_.get(), &info, space_.out()), "xrCreateReferenceSpace");
 }
 
-void OpenXrSource::create_swapchain(VkExtent2D wanted) {
-  const auto configurations = enumerate<XrViewConfigurationView>(
+void OpenXrSource::create_swapchains(VkExtent2D wanted) {
+  const auto configurations = enumerate_xr<XrViewConfigurationView>(
       "xrEnumerateViewConfigurationViews", {XR_TYPE_VIEW_CONFIGURATION_VIEW}, [&](auto capacity, auto* count, auto* items) {
         return xrEnumerateViewConfigurationViews(instance_.handle(), instance_.system(), kStereo, capacity, count, items);
       });
@@ -109,41 +115,37 @@ void OpenXrSource::create_swapchain(VkExtent2D wanted) {
   }
   views_.assign(configurations.size(), {XR_TYPE_VIEW, nullptr, identity_pose(), {}});
 
-  const auto modes = enumerate<XrEnvironmentBlendMode>(
+  const auto modes = enumerate_xr<XrEnvironmentBlendMode>(
       "xrEnumerateEnvironmentBlendModes", {}, [&](auto capacity, auto* count, auto* items) {
         return xrEnumerateEnvironmentBlendModes(instance_.handle(), instance_.system(), kStereo, capacity, count, items);
       });
   if (std::ranges::find(modes, XR_ENVIRONMENT_BLEND_MODE_OPAQUE) == modes.end()) blend_mode_ = modes.at(0);
 
   const auto formats =
-      enumerate<std::int64_t>("xrEnumerateSwapchainFormats", 0, [&](auto capacity, auto* count, auto* items) {
+      enumerate_xr<std::int64_t>("xrEnumerateSwapchainFormats", 0, [&](auto capacity, auto* count, auto* items) {
         return xrEnumerateSwapchainFormats(session_.get(), capacity, count, items);
       });
-  for (const VkFormat format : {VK_FORMAT_R8G8B8A8_SRGB, VK_FORMAT_B8G8R8A8_SRGB}) {
-    if (format_ == VK_FORMAT_UNDEFINED && std::ranges::find(formats, format) != formats.end()) format_ = format;
-  }
+  format_ = first_offered(formats, {VK_FORMAT_R8G8B8A8_SRGB, VK_FORMAT_B8G8R8A8_SRGB});
   if (format_ == VK_FORMAT_UNDEFINED) throw NoDevice("the OpenXR runtime offers no 8-bit sRGB swapchain format");
 
-  XrSwapchainCreateInfo info{XR_TYPE_SWAPCHAIN_CREATE_INFO};
-  info.usageFlags = XR_SWAPCHAIN_USAGE_COLOR_ATTACHMENT_BIT | XR_SWAPCHAIN_USAGE_TRANSFER_SRC_BIT;
-  info.format = format_;
-  info.sampleCount = 1;
-  info.width = extent_.width;
-  info.height = extent_.height;
-  info.faceCount = 1;
-  info.arraySize = view_count();
-  info.mipCount = 1;
-  check_xr(xrCreateSwapchain(session_.get(), &info, swapchain_.out()), "xrCreateSwapchain");
-  const auto images = enumerate<XrSwapchainImageVulkan2KHR>(
-      "xrEnumerateSwapchainImages", {XR_TYPE_SWAPCHAIN_IMAGE_VULKAN2_KHR}, [&](auto capacity, auto* count, auto* items) {
-        return xrEnumerateSwapchainImages(swapchain_.get(), capacity, count,
-                                          reinterpret_cast<XrSwapchainImageBaseHeader*>(items));
-      });
-  for (const auto& image : images) images_.push_back(image.image);
+  color_ = std::make_unique<OpenXrSwapchain>(
+      session_.get(),
+      OpenXrSwapchainOptions{format_, XR_SWAPCHAIN_USAGE_COLOR_ATTACHMENT_BIT | XR_SWAPCHAIN_USAGE_TRANSFER_SRC_BIT,
+                             extent_, view_count()});
+  if (!instance_.has(XR_KHR_COMPOSITION_LAYER_DEPTH_EXTENSION_NAME)) return;
+  depth_format_ = first_offered(formats, {VK_FORMAT_D32_SFLOAT, VK_FORMAT_D16_UNORM});
+  if (depth_format_ == VK_FORMAT_UNDEFINED) {
+    spdlog::info("the OpenXR runtime takes depth, but in no format that we draw: it gets none");
+    return;
+  }
+  depth_ = std::make_unique<OpenXrSwapchain>(
+      session_.get(), OpenXrSwapchainOptions{depth_format_, XR_SWAPCHAIN_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT, extent_,
+                                             view_count()});
 }
 
 std::string OpenXrSource::description() const {
-  return fmt::format("{}, {}x{} an eye, space {}", instance_.description(), extent_.width, extent_.height, space_name_);
+  return fmt::format("{}, {}x{} an eye, space {}, {}", instance_.description(), extent_.width, extent_.height,
+                     space_name_, depth_name(depth_format_));
 }
 
 bool OpenXrSource::alive(XrResult result, const char* call) {
@@ -303,55 +305,61 @@ void OpenXrSource::move(double dt_s, XrTime time) {
   }
 }
 
+bool OpenXrSource::acquire(OpenXrSwapchain& swapchain) {
+  if (state_.source_state() == SourceState::kLost) return false;
+  const OpenXrOutcome outcome = swapchain.acquire(device_);
+  if (!alive(outcome.result, outcome.call)) return false;
+  if (outcome.result == XR_TIMEOUT_EXPIRED) {
+    spdlog::warn("the OpenXR runtime keeps a swapchain image and does not let go");
+    state_.on_lost();
+  }
+  return swapchain.image() != VK_NULL_HANDLE;
+}
+
 FrameTarget OpenXrSource::acquire() {
   FrameTarget target;
-  if (state_.source_state() == SourceState::kLost) return target;
-  XrSwapchainImageAcquireInfo acquire{XR_TYPE_SWAPCHAIN_IMAGE_ACQUIRE_INFO};
-  std::uint32_t index = 0;
-  XrResult result = XR_SUCCESS;
-  {
-    const auto queue = device_.lock_queue();
-    result = xrAcquireSwapchainImage(swapchain_.get(), &acquire, &index);
-  }
-  if (!alive(result, "xrAcquireSwapchainImage")) return target;
-  XrSwapchainImageWaitInfo wait{XR_TYPE_SWAPCHAIN_IMAGE_WAIT_INFO};
-  wait.timeout = kImageTimeout_ns;
-  result = xrWaitSwapchainImage(swapchain_.get(), &wait);
-  if (!alive(result, "xrWaitSwapchainImage")) return target;
-  if (result == XR_TIMEOUT_EXPIRED) {
-    spdlog::warn("the OpenXR runtime has kept a swapchain image for {} s", kImageTimeout_ns / 1'000'000'000);
-    state_.on_lost();
-    return target;
-  }
-  image_held_ = true;
-  target.image = images_.at(index);
+  if (!acquire(*color_)) return target;
+  if (depth_ && !acquire(*depth_)) return target;
+  target.image = color_->image();
   target.format = format_;
   target.extent = extent_;
   target.layers = view_count();
   target.initial_layout = VK_IMAGE_LAYOUT_UNDEFINED;
   target.final_layout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
+  target.depth_image = depth_ ? depth_->image() : VK_NULL_HANDLE;
+  target.depth_format = depth_format_;
   return target;
 }
 
 void OpenXrSource::end(const FrameTiming& timing, const std::vector<ViewPose>& rendered_views) {
   if (state_.source_state() == SourceState::kLost) return;
   const auto queue = device_.lock_queue();
-  if (image_held_) {
-    XrSwapchainImageReleaseInfo release{XR_TYPE_SWAPCHAIN_IMAGE_RELEASE_INFO};
-    if (!alive(xrReleaseSwapchainImage(swapchain_.get(), &release), "xrReleaseSwapchainImage")) return;
+  const bool drawn = color_->image() != VK_NULL_HANDLE;
+  for (OpenXrSwapchain* swapchain : {color_.get(), depth_.get()}) {
+    if (swapchain == nullptr) continue;
+    const OpenXrOutcome outcome = swapchain->release();
+    if (!alive(outcome.result, outcome.call)) return;
   }
-  const bool shown = image_held_ && views_valid_ && rendered_views.size() == views_.size();
-  image_held_ = false;
+  const bool shown = drawn && views_valid_ && rendered_views.size() == views_.size();
 
+  std::vector<XrCompositionLayerDepthInfoKHR> layer_depths(view_count(), {XR_TYPE_COMPOSITION_LAYER_DEPTH_INFO_KHR});
   std::vector<XrCompositionLayerProjectionView> layer_views;
   for (std::uint32_t i = 0; shown && i < view_count(); ++i) {
     XrCompositionLayerProjectionView view{XR_TYPE_COMPOSITION_LAYER_PROJECTION_VIEW};
     view.pose = views_[i].pose;
     view.fov = {rendered_views[i].fov_left_rad, rendered_views[i].fov_right_rad, rendered_views[i].fov_up_rad,
                 rendered_views[i].fov_down_rad};
-    view.subImage.swapchain = swapchain_.get();
-    view.subImage.imageRect.extent = {static_cast<std::int32_t>(extent_.width), static_cast<std::int32_t>(extent_.height)};
-    view.subImage.imageArrayIndex = i;
+    view.subImage = color_->layer(i);
+    if (depth_) {
+      // Reversed (view_depth.h): a depth of 0 lies at the far plane, 1 at the near one.
+      XrCompositionLayerDepthInfoKHR& depth = layer_depths[i];
+      depth.subImage = depth_->layer(i);
+      depth.minDepth = 0.0f;
+      depth.maxDepth = 1.0f;
+      depth.nearZ = depth_range_.far_m;
+      depth.farZ = depth_range_.near_m;
+      view.next = &depth;
+    }
     layer_views.push_back(view);
   }
   XrCompositionLayerProjection projection{XR_TYPE_COMPOSITION_LAYER_PROJECTION};

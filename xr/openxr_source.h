@@ -1,4 +1,5 @@
-// Frames to and from a headset: an OpenXR session with one stereo projection layer.
+// Frames to and from a headset: an OpenXR session with one stereo projection layer, and its depth where the runtime takes
+// it.
 #pragma once
 
 #include <deque>
@@ -10,6 +11,7 @@
 #include "xr/locomotion.h"
 #include "xr/openxr_input.h"
 #include "xr/openxr_instance.h"
+#include "xr/openxr_swapchain.h"
 #include "xr/session_state.h"
 
 namespace probewalk {
@@ -36,6 +38,8 @@ class OpenXrSource final : public FrameSource {
   VkExtent2D view_extent() const override { return extent_; }
   std::uint32_t view_count() const override { return static_cast<std::uint32_t>(views_.size()); }
   VkFormat color_format() const override { return format_; }
+  VkFormat depth_format() const override { return depth_format_; }
+  void set_depth_range(const DepthRange& range) override { depth_range_ = range; }
   FrameTarget acquire() override;
   // The layer states the poses of the last locate; of `rendered_views` it takes the fields of view, which differ from
   // the located ones only where a path is replayed.
@@ -62,9 +66,11 @@ class OpenXrSource final : public FrameSource {
 
   void create_session();
   void create_space(bool seated);
-  void create_swapchain(VkExtent2D wanted);
+  void create_swapchains(VkExtent2D wanted);
   // False when the runtime is gone (the state then says so); throws on any other error.
   bool alive(XrResult result, const char* call);
+  // Whether an image of it is held now; else the display is lost.
+  bool acquire(OpenXrSwapchain& swapchain);
   void on_session_change(XrSessionState next);
   bool locate_views(XrTime time, std::vector<XrView>& views);
   static Head head_of(const std::vector<XrView>& views);
@@ -83,11 +89,12 @@ class OpenXrSource final : public FrameSource {
   std::string space_name_;
   XrEnvironmentBlendMode blend_mode_ = XR_ENVIRONMENT_BLEND_MODE_OPAQUE;
 
-  XrOwned<XrSwapchain, xrDestroySwapchain> swapchain_;
-  std::vector<VkImage> images_;
+  std::unique_ptr<OpenXrSwapchain> color_;
+  std::unique_ptr<OpenXrSwapchain> depth_;  // null: the runtime takes no depth
   VkExtent2D extent_{};
   VkFormat format_ = VK_FORMAT_UNDEFINED;
-  bool image_held_ = false;
+  VkFormat depth_format_ = VK_FORMAT_UNDEFINED;
+  DepthRange depth_range_;
 
   std::vector<XrView> views_;  // of the last locate
   bool views_valid_ = false;

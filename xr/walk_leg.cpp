@@ -39,13 +39,16 @@ WalkLeg::WalkLeg(const WalkOptions& options, const Pack& pack, const Display& di
       watch_(watch),
       progress_(progress),
       settle_(options.settle.value_or(source_.kind() == "offscreen" && !books.left_ns)),
-      rooms_(pack, *display.device, {options.budget_bytes, options.loader_threads}, progress),
+      rooms_(pack, *display.device, {options.budget_bytes, options.loader_threads, options.report.has_value()}, progress),
       renderer_(*display.device, rooms_.store(),
                 {.tracer = {.extent_px = source_.view_extent(), .views = source_.view_count()},
-                 .target_format = source_.color_format()}),
+                 .target_format = source_.color_format(),
+                 .depth_format = source_.depth_format()}),
       book_(books.ledger) {
   settings_.trace = default_dials(pack.manifest().radiance_scale);
   settings_.exposure = exposure_from_ev(static_cast<float>(options.exposure_ev.value_or(pack.manifest().exposure_ev)));
+  settings_.depth = depth_range_of(pack.manifest().bounds);
+  source_.set_depth_range(settings_.depth);
 }
 
 LegEnd WalkLeg::run() {
@@ -206,6 +209,7 @@ void WalkLeg::finish() {
   all.device_budget_bytes = facts.device_budget_bytes;
   all.need_to_resident_ns.insert(all.need_to_resident_ns.end(), facts.need_to_resident_ns.begin(),
                                  facts.need_to_resident_ns.end());
+  all.loads.insert(all.loads.end(), facts.loads.begin(), facts.loads.end());
   books_.validation_messages += display_.device->validation_messages();
 }
 

@@ -20,6 +20,7 @@ StreamerOptions streamer_options(const WalkRoomsOptions& options) {
   streamer.residency.budget_bytes = options.budget_bytes;
   streamer.loader.threads = options.threads;
   streamer.retire_updates = kFrameSlots + 1;
+  streamer.keep_loads = options.keep_loads;
   return streamer;
 }
 
@@ -102,6 +103,12 @@ StreamingFacts WalkRooms::facts() const {
   facts.rooms_loaded = statistics.rooms_loaded;
   facts.device_budget_bytes = options_.budget_bytes == kUnlimitedBudget ? 0 : options_.budget_bytes;
   facts.need_to_resident_ns = statistics.need_to_resident_ns;
+  for (const LoadResult& load : streamer_.loads()) {
+    facts.loads.push_back({pack_.manifest().rooms[load.key.room].id, load.key.level, load.thread,
+                           load.refused ? "takes more than the pack states" : load.error, load.bytes_disk,
+                           load.bytes_device, load.requested_ns, load.started_ns, load.read_ns, load.decoded_ns,
+                           load.finished_ns});
+  }
   return facts;
 }
 

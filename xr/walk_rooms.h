@@ -21,6 +21,7 @@ namespace probewalk {
 struct WalkRoomsOptions {
   std::uint64_t budget_bytes = kUnlimitedBudget;
   unsigned threads = 1;
+  bool keep_loads = false;  // for a report: facts() lists them
 };
 
 class WalkRooms {

@@ -138,6 +138,15 @@ std::uint64_t device_probe_bytes(int n, int r, std::size_t cut_cells) {
   return 4 * (vertices + pyramid + n2 / 16 + kCutRecordWords * cut_cells + radiance);
 }
 
+std::uint64_t device_block_bytes(const std::vector<std::uint32_t>& words) {
+  const std::uint64_t bytes = words.size() * sizeof(std::uint32_t);
+  return (bytes + kDeviceBlockAlignment - 1) / kDeviceBlockAlignment * kDeviceBlockAlignment;
+}
+
+std::uint64_t device_bytes(const DeviceProbe& probe) {
+  return device_block_bytes(probe.geometry) + device_block_bytes(probe.radiance);
+}
+
 DeviceProbe build_device_probe(const ProbeMap& map) {
   const ProbeGeometry& g = map.geometry;
   const int n = g.n;

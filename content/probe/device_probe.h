@@ -22,8 +22,14 @@ DeviceProbe build_device_probe(const ProbeMap& map);
 // The words must outlive the record's use.
 ProbeRecord record_in_memory(const DeviceProbe& probe);
 
-// Bytes of a probe's two blocks without its cut records, whose number only the map knows.
+// Bytes of the words of a probe of n cells and r texels a side.
 std::uint64_t device_probe_bytes(int n, int r, std::size_t cut_cells);
+// Bytes that a probe's two blocks take on the device, where each begins at a multiple of kDeviceBlockAlignment.
+inline constexpr std::uint64_t kDeviceBlockAlignment = 16;
+std::uint64_t device_block_bytes(const std::vector<std::uint32_t>& words);
+std::uint64_t device_bytes(const DeviceProbe& probe);
+// device_bytes is at most this much more than device_probe_bytes.
+inline constexpr std::uint64_t kMostPadding_bytes = 2 * (kDeviceBlockAlignment - sizeof(std::uint32_t));
 std::size_t count_cut_cells(const ProbeGeometry& geometry);
 
 // Position as float plus what rounding left.

@@ -20,7 +20,7 @@ ChunkLoader::ChunkLoader(const Manifest& manifest, const ChunkSource& source, De
                          const LoaderOptions& options)
     : manifest_(manifest), source_(source), deliver_(std::move(deliver)), queue_capacity_(options.queue_capacity) {
   for (unsigned k = 0; k < std::max(options.threads, 1u); ++k) {
-    threads_.emplace_back([this](std::stop_token stop) { work(stop); });
+    threads_.emplace_back([this, k](std::stop_token stop) { work(stop, k); });
   }
 }
 
@@ -29,11 +29,11 @@ ChunkLoader::~ChunkLoader() {
   threads_.clear();
 }
 
-bool ChunkLoader::request(LevelKey key) {
+bool ChunkLoader::request(LevelKey key, std::uint64_t reserved_bytes) {
   {
     const std::lock_guard lock(queue_mutex_);
     if (queue_.size() >= queue_capacity_) return false;
-    queue_.push_back({key, now_ns()});
+    queue_.push_back({key, reserved_bytes, now_ns()});
     depth_.fetch_add(1, std::memory_order_relaxed);
   }
   queue_filled_.notify_one();
@@ -52,7 +52,7 @@ void ChunkLoader::wait(std::chrono::milliseconds at_most) {
   finished_filled_.wait_for(lock, at_most, [this] { return !finished_.empty(); });
 }
 
-void ChunkLoader::work(std::stop_token stop) {
+void ChunkLoader::work(std::stop_token stop, unsigned thread) {
   while (true) {
     Request request;
     {
@@ -63,6 +63,7 @@ void ChunkLoader::work(std::stop_token stop) {
       queue_.pop_front();
     }
     LoadResult result = load(request);
+    result.thread = thread;
     {
       const std::lock_guard lock(finished_mutex_);
       finished_.push_back(std::move(result));
@@ -73,19 +74,26 @@ void ChunkLoader::work(std::stop_token stop) {
 }
 
 LoadResult ChunkLoader::load(const Request& request) const {
-  LoadResult result{request.key, {}, 0, request.requested_ns, now_ns(), 0};
+  LoadResult result;
+  result.key = request.key;
+  result.requested_ns = request.requested_ns;
+  result.started_ns = now_ns();
   try {
     const RoomEntry& room = manifest_.rooms.at(request.key.room);
     const LevelEntry& level = room.levels.at(request.key.level);
     LoadedLevel loaded{request.key.room, request.key.level, room.first_probe, {}};
     const std::vector<std::byte> chunk = source_.read(level);
     result.bytes_disk = chunk.size();
+    result.read_ns = now_ns();
     RoomLevel maps = decode_level(manifest_, request.key.room, request.key.level, chunk);
     for (ProbeMap& map : maps.probes) {
       loaded.probes.push_back(build_device_probe(map));
+      result.bytes_device += device_bytes(loaded.probes.back());
       map = ProbeMap{};  // a room at its finest need not be in memory twice
     }
-    deliver_(std::move(loaded));
+    result.decoded_ns = now_ns();
+    result.refused = result.bytes_device > request.reserved_bytes;
+    if (!result.refused) deliver_(std::move(loaded));
   } catch (const std::exception& error) {
     result.error = error.what();
   }

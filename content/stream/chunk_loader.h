@@ -29,10 +29,16 @@ struct LoadedLevel {
 
 struct LoadResult {
   LevelKey key;
-  std::string error;  // empty: it arrived. Errors are values here: nothing is thrown across threads
+  std::string error;  // empty: it arrived, or was refused. Errors are values here: nothing is thrown across threads
+  bool refused = false;  // takes more than was reserved: not handed over
   std::uint64_t bytes_disk = 0;
-  std::int64_t requested_ns = 0;  // on std::chrono::steady_clock
+  std::uint64_t bytes_device = 0;  // that it really takes; 0 = not decoded
+  unsigned thread = 0;             // that loaded it, from 0
+  // std::chrono::steady_clock, which is CLOCK_MONOTONIC; 0 = did not come to that.
+  std::int64_t requested_ns = 0;
   std::int64_t started_ns = 0;
+  std::int64_t read_ns = 0;     // its bytes are in memory, their hash is right
+  std::int64_t decoded_ns = 0;  // decompressed, decoded, made the device's words
   std::int64_t finished_ns = 0;
 };
 
@@ -53,8 +59,9 @@ class ChunkLoader {
   ChunkLoader(const ChunkLoader&) = delete;
   ChunkLoader& operator=(const ChunkLoader&) = delete;
 
-  // False when the queue is full: ask again later.
-  bool request(LevelKey key);
+  // A level that takes more than `reserved_bytes` on the device is not handed over. False when the queue is full: ask
+  // again later.
+  bool request(LevelKey key, std::uint64_t reserved_bytes = kUnlimitedBudget);
   // What has finished since the last call, in the order of finishing. Never blocks.
   std::vector<LoadResult> poll();
   // Waits until there is something to poll, at most this long. Not for frame threads.
@@ -65,9 +72,10 @@ class ChunkLoader {
  private:
   struct Request {
     LevelKey key;
+    std::uint64_t reserved_bytes = 0;
     std::int64_t requested_ns = 0;
   };
-  void work(std::stop_token stop);
+  void work(std::stop_token stop, unsigned thread);
   LoadResult load(const Request& request) const;
 
   const Manifest& manifest_;

@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "content/error.h"
+#include "content/probe/device_probe.h"
 
 namespace probewalk {
 
@@ -16,7 +17,9 @@ namespace {
 constexpr std::uint64_t kSmallShare = 4;
 constexpr double kFarthestLookAhead_m = 5.0;  // a teleport's velocity predicts nothing
 
-std::uint64_t coarse_bytes(const RoomEntry& room) { return room.levels.empty() ? 0 : room.levels.front().bytes_device; }
+std::uint64_t coarse_bytes(const RoomEntry& room) {
+  return room.levels.empty() ? 0 : planned_bytes(room, room.levels.front());
+}
 
 bool occupies(LevelStatus status) { return status == LevelStatus::kLoading || status == LevelStatus::kResident; }
 
@@ -36,6 +39,15 @@ struct Residency::Candidate {
   bool fine = false;  // near enough for more than its coarsest level
 };
 
+std::uint64_t planned_bytes(const RoomEntry& room, const LevelEntry& level) {
+  const auto bytes = [&](std::uint64_t cut_cells) {
+    return room.probe_count * device_probe_bytes(static_cast<int>(level.geometry_size),
+                                                 static_cast<int>(level.radiance_size), cut_cells);
+  };
+  const std::uint64_t cells = std::uint64_t{level.geometry_size} * level.geometry_size;
+  return std::clamp(level.bytes_device, bytes(0), bytes(cells)) + room.probe_count * kMostPadding_bytes;
+}
+
 std::uint64_t minimum_budget(const Manifest& manifest, const ResidencyOptions& options) {
   const RoomGraph graph(manifest.rooms, manifest.portals);
   std::uint64_t most = 0;
@@ -51,11 +63,9 @@ std::uint64_t minimum_budget(const Manifest& manifest, const ResidencyOptions& o
 
 Residency::Residency(const Manifest& manifest, const ResidencyOptions& options)
     : graph_(manifest.rooms, manifest.portals), options_(options) {
-  std::uint64_t all = 0;
   for (const RoomEntry& room : manifest.rooms) {
     auto& levels = bytes_.emplace_back();
-    for (const LevelEntry& level : room.levels) levels.push_back(level.bytes_device);
-    all += coarse_bytes(room);
+    for (const LevelEntry& level : room.levels) levels.push_back(planned_bytes(room, level));
   }
   const std::uint64_t least = minimum_budget(manifest, options);
   if (options.budget_bytes < least) {
@@ -64,7 +74,18 @@ Residency::Residency(const Manifest& manifest, const ResidencyOptions& options)
                                "--device-budget {}",
                                static_cast<double>(options.budget_bytes) / kMiB, (least + kMiB - 1) / kMiB));
   }
-  all_coarse_ = all <= options.budget_bytes / kSmallShare;
+  all_coarse_ = is_small();
+}
+
+bool Residency::is_small() const {
+  std::uint64_t all = 0;
+  for (const auto& levels : bytes_) all += levels.empty() ? 0 : levels.front();
+  return all <= options_.budget_bytes / kSmallShare;
+}
+
+void Residency::learn(LevelKey key, std::uint64_t bytes) {
+  bytes_[key.room][key.level] = bytes;
+  if (key.level == 0) all_coarse_ = is_small();
 }
 
 LevelStatuses Residency::absent() const {

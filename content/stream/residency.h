@@ -6,7 +6,8 @@
 //    that the walker is about to enter, then nearer ones first;
 //  - what is wanted is never evicted; what is not is evicted only to make space, farthest first: a walker who turns
 //    back finds the rooms still there;
-//  - resident, loading and not yet freed bytes together never exceed the budget.
+//  - resident, loading and not yet freed bytes together never exceed the budget. What a level takes is what the pack
+//    states, kept within what maps of its size can take, until it has been decoded and is known.
 #pragma once
 
 #include <cstdint>
@@ -58,6 +59,9 @@ struct ResidencyDecision {
   bool coarse = false;             // the walker's room or one beside it lacks its wanted level
 };
 
+// Device bytes to set aside for a level of a room before it has been decoded.
+std::uint64_t planned_bytes(const RoomEntry& room, const LevelEntry& level);
+
 // Device bytes that suffice wherever the walker stands: the coarsest levels that are always wanted.
 std::uint64_t minimum_budget(const Manifest& manifest, const ResidencyOptions& options = {});
 
@@ -71,11 +75,16 @@ class Residency {
   // `retired_bytes` are evicted but not yet freed. The same calls in the same order give the same decisions.
   ResidencyDecision decide(const Walker& walker, const LevelStatuses& status, std::uint64_t retired_bytes = 0);
 
+  // Device bytes that a level counts for.
+  std::uint64_t bytes(LevelKey key) const { return bytes_[key.room][key.level]; }
+  // It has been decoded, and takes this much.
+  void learn(LevelKey key, std::uint64_t bytes);
+
  private:
   struct Candidate;
   std::vector<Candidate> candidates(const Walker& walker, const LevelStatuses& status);
   std::vector<LevelKey> choose(const std::vector<Candidate>& order, const LevelStatuses& status) const;
-  std::uint64_t bytes(LevelKey key) const { return bytes_[key.room][key.level]; }
+  bool is_small() const;
 
   RoomGraph graph_;
   std::vector<std::vector<std::uint64_t>> bytes_;  // [room][level]

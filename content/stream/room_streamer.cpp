@@ -1,5 +1,7 @@
 #include "content/stream/room_streamer.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <set>
 
@@ -38,14 +40,14 @@ void RoomStreamer::update(const Walker& walker) {
   for (const LevelKey& key : decision_.evictions) {
     evict_(key);
     status_[key.room][key.level] = LevelStatus::kAbsent;
-    retired_.push_back({statistics_.updates, bytes(key)});
-    retired_bytes_ += bytes(key);
-    statistics_.device_bytes -= bytes(key);
+    retired_.push_back({statistics_.updates, residency_.bytes(key)});
+    retired_bytes_ += residency_.bytes(key);
+    statistics_.device_bytes -= residency_.bytes(key);
   }
   for (const LevelKey& key : decision_.loads) {
-    if (!loader_.request(key)) break;
+    if (!loader_.request(key, residency_.bytes(key))) break;
     status_[key.room][key.level] = LevelStatus::kLoading;
-    statistics_.device_bytes += bytes(key);
+    statistics_.device_bytes += residency_.bytes(key);
   }
   if (decision_.coarse) ++statistics_.coarse_updates;
   statistics_.device_bytes_max = std::max(statistics_.device_bytes_max, statistics_.device_bytes + retired_bytes_);
@@ -62,25 +64,50 @@ void RoomStreamer::retire() {
 
 void RoomStreamer::take_arrivals() {
   for (LoadResult& result : loader_.poll()) {
-    const LevelKey key = result.key;
-    statistics_.bytes_read += result.bytes_disk;
-    const auto since = wanted_since_ns_.find(key);
-    if (result.error.empty()) {
-      status_[key.room][key.level] = LevelStatus::kResident;
-      ++statistics_.levels_loaded;
-      if (!room_seen_[key.room]) {
-        room_seen_[key.room] = true;
-        ++statistics_.rooms_loaded;
-      }
-      if (since != wanted_since_ns_.end()) statistics_.need_to_resident_ns.push_back(result.finished_ns - since->second);
-    } else {
-      status_[key.room][key.level] = LevelStatus::kFailed;
-      statistics_.device_bytes -= bytes(key);
-      ++statistics_.levels_failed;
-      errors_.push_back(std::move(result.error));
-    }
-    if (since != wanted_since_ns_.end()) wanted_since_ns_.erase(since);
+    if (options_.keep_loads) loads_.push_back(result);
+    arrive(result);
   }
+}
+
+void RoomStreamer::arrive(LoadResult& result) {
+  const LevelKey key = result.key;
+  LevelStatus& status = status_[key.room][key.level];
+  statistics_.bytes_read += result.bytes_disk;
+  statistics_.device_bytes -= residency_.bytes(key);  // what was set aside
+  if (result.refused) {
+    errors_.push_back(describe_refused(result));
+    ++statistics_.levels_refused;
+    status = LevelStatus::kAbsent;
+    residency_.learn(key, result.bytes_device);
+    return;  // wanted as before, if it still fits
+  }
+  const auto since = wanted_since_ns_.find(key);
+  if (result.error.empty()) {
+    status = LevelStatus::kResident;
+    residency_.learn(key, result.bytes_device);
+    statistics_.device_bytes += residency_.bytes(key);
+    ++statistics_.levels_loaded;
+    if (!room_seen_[key.room]) {
+      room_seen_[key.room] = true;
+      ++statistics_.rooms_loaded;
+    }
+    if (since != wanted_since_ns_.end()) statistics_.need_to_resident_ns.push_back(result.finished_ns - since->second);
+  } else {
+    status = LevelStatus::kFailed;
+    ++statistics_.levels_failed;
+    errors_.push_back(std::move(result.error));
+  }
+  if (since != wanted_since_ns_.end()) wanted_since_ns_.erase(since);
+}
+
+std::string RoomStreamer::describe_refused(const LoadResult& result) const {
+  const RoomEntry& room = manifest_.rooms[result.key.room];
+  const std::uint64_t budget_bytes = options_.residency.budget_bytes;
+  return fmt::format("room {}, level {}: takes {} bytes on the device where the pack states {}{}", room.id, result.key.level,
+                     result.bytes_device, room.levels[result.key.level].bytes_device,
+                     result.bytes_device > budget_bytes
+                         ? fmt::format(", more than the budget of {}: it is left out", budget_bytes)
+                         : "; it is loaded anew where the budget has space for it");
 }
 
 bool RoomStreamer::settle(const Walker& walker, std::chrono::milliseconds at_most, const std::function<void()>& between) {

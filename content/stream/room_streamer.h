@@ -20,6 +20,7 @@ struct StreamerOptions {
   ResidencyOptions residency;
   LoaderOptions loader;
   std::uint32_t retire_updates = 3;  // updates until what was evicted is surely freed: frames in flight + 1
+  bool keep_loads = false;           // for a report: remember every load
 };
 
 struct StreamerStatistics {
@@ -27,9 +28,10 @@ struct StreamerStatistics {
   std::uint64_t levels_loaded = 0;
   std::uint64_t rooms_loaded = 0;  // that have had any level
   std::uint64_t levels_failed = 0;
+  std::uint64_t levels_refused = 0;  // took more than the pack states, and were planned anew
   std::uint64_t updates = 0;
   std::uint64_t coarse_updates = 0;  // the walker's room or one beside it was coarser than wanted
-  std::uint64_t device_bytes = 0;    // resident, loading and not yet freed, by the manifest's sizes
+  std::uint64_t device_bytes = 0;    // resident and loading; what has been decoded by its true size
   std::uint64_t device_bytes_max = 0;
   std::size_t queue_depth = 0;
   std::size_t queue_depth_max = 0;
@@ -50,7 +52,9 @@ class RoomStreamer {
   const ResidencyDecision& decision() const { return decision_; }
   const StreamerStatistics& statistics() const { return statistics_; }
   const LevelStatuses& status() const { return status_; }
-  // One line for each chunk that could not be loaded since the last call.
+  // Every load that has finished, in that order; empty unless options.keep_loads.
+  const std::vector<LoadResult>& loads() const { return loads_; }
+  // One line for each chunk that could not be loaded, or takes more than the pack states, since the last call.
   std::vector<std::string> take_errors() { return std::exchange(errors_, {}); }
 
   // Updates until settled, waiting for the loader in between; for stills and for walks that may take their time.
@@ -60,7 +64,8 @@ class RoomStreamer {
  private:
   void take_arrivals();
   void retire();
-  std::uint64_t bytes(LevelKey key) const { return manifest_.rooms[key.room].levels[key.level].bytes_device; }
+  void arrive(LoadResult& result);
+  std::string describe_refused(const LoadResult& result) const;
 
   struct Retired {
     std::uint64_t update = 0;  // number of the update that evicted it
@@ -79,6 +84,7 @@ class RoomStreamer {
   std::vector<bool> room_seen_;
   StreamerStatistics statistics_;
   std::vector<std::string> errors_;
+  std::vector<LoadResult> loads_;
   ChunkLoader loader_;  // last: its threads end first
 };
 

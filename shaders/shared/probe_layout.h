@@ -86,7 +86,7 @@ struct ViewConstants {
 
 PW_CONSTANT int kMaxViews = 4;
 
-// Written just before submit (late pose), read by trace_stereo.comp and resolve.frag.
+// Written just before submit (late pose), read by trace_stereo.comp, resolve.frag and depth.frag.
 struct FrameConstants {
   GridConstants grid;
   TraceConstants trace;
@@ -95,7 +95,7 @@ struct FrameConstants {
   float exposure;  // 2^-ev-like factor: cd/m^2 * exposure = 1 is display white before the tone curve
   float fade;      // 0 = picture, 1 = black
   pw_uint frame_index;
-  float near_m;
+  float near_m;  // planes of the depth written, see view_depth.h
   float far_m;
   ViewConstants view[4];
 };

@@ -4,14 +4,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "content/error.h"
+#include "content/probe/device_probe.h"
 #include "content/stream/residency.h"
 
 namespace probewalk {
 namespace {
 
-constexpr std::uint64_t kCoarse = 10, kMiddle = 40, kFine = 160;
+// What the policy sets aside for the levels: possible for maps of 8, 16 and 32 cells a side.
+constexpr std::uint64_t kCoarse = 1000, kMiddle = 4000, kFine = 16000;
 
 // Rooms of 4 m in a row along x, a door between each two; three levels each.
 Manifest row_of_rooms(std::uint32_t count) {
@@ -20,8 +23,11 @@ Manifest row_of_rooms(std::uint32_t count) {
     RoomEntry room;
     room.id = "room-" + std::to_string(k);
     room.bounds = {{4.0 * k, 0.0, 0.0}, {4.0 * k + 4.0, 3.0, 4.0}};
+    room.probe_count = 1;
+    std::uint32_t size = 8;
     for (const std::uint64_t bytes : {kCoarse, kMiddle, kFine}) {
-      room.levels.push_back({std::string(32, '0'), 8, 8, 1, bytes, -1.0});
+      room.levels.push_back({std::string(32, '0'), size, size, 1, bytes - kMostPadding_bytes, -1.0});
+      size *= 2;
     }
     m.rooms.push_back(room);
     const double x = 4.0 * k;
@@ -38,12 +44,15 @@ Walker standing(double x) { return {{x, 1.6, 2.0}, {0.0, 0.0, 0.0}}; }
 class Simulation {
  public:
   Simulation(const Manifest& manifest, const ResidencyOptions& options)
-      : manifest_(manifest), options_(options), residency_(manifest, options), status_(residency_.absent()) {}
+      : options_(options), residency_(manifest, options), status_(residency_.absent()) {}
 
   ResidencyDecision step(const Walker& walker) {
     std::erase_if(loading_, [&](Loading& l) {
       if (--l.updates_left > 0) return false;
-      status_[l.key.room][l.key.level] = LevelStatus::kResident;
+      const auto truth = true_bytes_.find(l.key);
+      const bool fits = truth == true_bytes_.end() || truth->second <= residency_.bytes(l.key);
+      status_[l.key.room][l.key.level] = fits ? LevelStatus::kResident : LevelStatus::kAbsent;
+      if (truth != true_bytes_.end()) residency_.learn(l.key, truth->second);
       return true;
     });
     std::erase_if(retired_, [](Retired& r) { return --r.updates_left == 0; });
@@ -93,6 +102,8 @@ class Simulation {
   }
   bool resident(std::uint32_t room, std::uint32_t level) const { return status_[room][level] == LevelStatus::kResident; }
   void fail(LevelKey key) { status_[key.room][key.level] = LevelStatus::kFailed; }
+  // What it takes, whatever the manifest says.
+  void lie(LevelKey key, std::uint64_t true_bytes) { true_bytes_[key] = true_bytes; }
   std::size_t loads() const { return loads_; }
   std::size_t evictions() const { return evictions_; }
 
@@ -105,12 +116,12 @@ class Simulation {
     std::uint64_t bytes;
     int updates_left;
   };
-  std::uint64_t bytes(LevelKey key) const { return manifest_.rooms[key.room].levels[key.level].bytes_device; }
+  std::uint64_t bytes(LevelKey key) const { return residency_.bytes(key); }
 
-  const Manifest& manifest_;
   ResidencyOptions options_;
   Residency residency_;
   LevelStatuses status_;
+  std::map<LevelKey, std::uint64_t> true_bytes_;
   std::vector<Loading> loading_;
   std::vector<Retired> retired_;
   std::size_t loads_ = 0, evictions_ = 0;
@@ -272,6 +283,62 @@ TEST(Residency, ABadChunkKeepsTheCoarserLevel) {
   s.fail({1, 0});
   s.settle(standing(1.0));
   EXPECT_TRUE(s.resident(1, 2));
+}
+
+TEST(Residency, WhatThePackStatesIsKeptWithinWhatItsMapsCanTake) {
+  Manifest m = row_of_rooms(1);
+  LevelEntry& level = m.rooms[0].levels[0];
+  const std::uint64_t least = device_probe_bytes(8, 8, 0), most = device_probe_bytes(8, 8, 64);
+  EXPECT_EQ(planned_bytes(m.rooms[0], level), kCoarse);
+  level.bytes_device = 0;
+  EXPECT_EQ(planned_bytes(m.rooms[0], level), least + kMostPadding_bytes);
+  level.bytes_device = std::uint64_t{64} << 30;
+  EXPECT_EQ(planned_bytes(m.rooms[0], level), most + kMostPadding_bytes);
+  // So a pack that states too much still fits a budget that holds it.
+  EXPECT_LE(minimum_budget(m), most + kMostPadding_bytes);
+}
+
+TEST(Residency, LevelsThatTakeMoreThanStatedNeitherBreakTheBudgetNorTheWalk) {
+  const Manifest m = row_of_rooms(8);
+  for (const std::uint64_t budget : {7 * kCoarse + kFine, 8 * kCoarse + 3 * kFine}) {
+    Simulation s(m, with_budget(budget));
+    // Every fine level takes a third more than stated; that of room 2 alone more than the whole budget.
+    for (std::uint32_t room = 0; room < 8; ++room) s.lie({room, 2}, kFine + kFine / 3);
+    s.lie({2, 2}, budget + 1);
+    for (double x = 0.5; x < 31.0; x += 0.05) s.step({{x, 1.6, 2.0}, {1.4, 0.0, 0.0}});  // each step checks the budget
+    s.settle(standing(1.0));
+    EXPECT_TRUE(s.resident(0, 0));
+    s.settle(standing(10.0));
+    EXPECT_FALSE(s.resident(2, 2));
+    EXPECT_TRUE(s.resident(2, 1)) << "the next coarser stands in";
+    // What is known is not tried again.
+    const std::size_t loads = s.loads();
+    for (int k = 0; k < 200; ++k) s.step(standing(10.0));
+    EXPECT_EQ(s.loads(), loads);
+  }
+}
+
+TEST(Residency, LevelsThatTakeLessThanStatedLeaveSpaceForOthers) {
+  const Manifest m = row_of_rooms(3);
+  const std::uint64_t budget = 3 * kCoarse + kFine + kMiddle;
+  Simulation honest(m, with_budget(budget)), lying(m, with_budget(budget));
+  for (std::uint32_t room = 0; room < 3; ++room) lying.lie({room, 2}, kMiddle);
+  honest.settle(standing(1.0));
+  lying.settle(standing(1.0));
+  EXPECT_FALSE(honest.resident(1, 2));
+  EXPECT_TRUE(lying.resident(0, 2) && lying.resident(1, 2) && !lying.resident(2, 2));
+}
+
+TEST(Residency, AWalkersRoomThatTakesMoreThanStatedComesBeforeItsNeighbours) {
+  const Manifest m = row_of_rooms(3);
+  Simulation s(m, with_budget(3 * kCoarse));
+  s.settle(standing(1.0));
+  EXPECT_TRUE(s.resident(2, 0));
+  Simulation lying(m, with_budget(3 * kCoarse));
+  lying.lie({0, 0}, 2 * kCoarse + 1);
+  lying.settle(standing(1.0));
+  EXPECT_TRUE(lying.resident(0, 0));
+  EXPECT_FALSE(lying.resident(1, 0) && lying.resident(2, 0));
 }
 
 TEST(Residency, RoomsWithoutProbesAskForNothing) {

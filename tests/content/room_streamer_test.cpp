@@ -61,9 +61,13 @@ TEST(ChunkLoader, DeliversTheWordsOfTheLevel) {
   EXPECT_EQ(results[0].bytes_disk, m.rooms[1].levels[1].bytes_disk);
   EXPECT_LE(results[0].requested_ns, results[0].started_ns);
   EXPECT_LE(results[0].started_ns, results[0].finished_ns);
+  EXPECT_LE(results[0].started_ns, results[0].read_ns);
+  EXPECT_LE(results[0].read_ns, results[0].decoded_ns);
+  EXPECT_LE(results[0].decoded_ns, results[0].finished_ns);
   EXPECT_EQ(loader.depth(), 0u);
   const auto loaded = deliveries.take();
   ASSERT_EQ(loaded.size(), 1u);
+  EXPECT_EQ(results[0].bytes_device, device_bytes(loaded[0].probes[0]) + device_bytes(loaded[0].probes[1]));
   EXPECT_EQ(loaded[0].first_probe, 2u);
   const RoomLevel expected = Pack::open(folder.path()).read_level(1, 1);
   ASSERT_EQ(loaded[0].probes.size(), 2u);
@@ -83,6 +87,25 @@ TEST(ChunkLoader, BadChunksAndRefusingDevicesAreValues) {
   EXPECT_THAT(errors[(LevelKey{0, 0})], HasSubstr("exhausted"));
   EXPECT_THAT(errors[(LevelKey{0, 1})], HasSubstr(m.rooms[0].levels[1].chunk));
   EXPECT_NE(errors[(LevelKey{7, 0})], "");
+}
+
+TEST(ChunkLoader, DoesNotHandOverMoreThanWasReserved) {
+  const TemporaryFolder folder("loader-reserved");
+  const Manifest m = write_small_pack(folder.path(), 1);
+  const FolderSource source(folder.path());
+  Deliveries deliveries;
+  ChunkLoader loader(m, source, deliveries.sink());
+  const std::uint64_t planned = planned_bytes(m.rooms[0], m.rooms[0].levels[1]);
+  ASSERT_TRUE(loader.request({0, 1}, planned));
+  const std::uint64_t taken = wait_for(loader, 1)[0].bytes_device;
+  EXPECT_LE(taken, planned) << "what an honest pack states suffices";
+  EXPECT_EQ(deliveries.take().size(), 1u);
+  ASSERT_TRUE(loader.request({0, 1}, taken - 1));
+  const LoadResult refused = wait_for(loader, 1)[0];
+  EXPECT_TRUE(refused.refused);
+  EXPECT_EQ(refused.error, "");
+  EXPECT_EQ(refused.bytes_device, taken);
+  EXPECT_TRUE(deliveries.take().empty());
 }
 
 // A source that holds its readers until told.
@@ -137,12 +160,20 @@ TEST(RoomStreamer, SettlesWithTheRoomsThatAreWanted) {
   Deliveries deliveries;
   RoomStreamer streamer(m, source, deliveries.sink(), [](LevelKey) { ADD_FAILURE() << "nothing needs to go"; });
   EXPECT_TRUE(streamer.settle({{1.0, 1.6, -2.0}, {}}, 10s));
-  EXPECT_EQ(deliveries.take().size(), 4u);
+  std::uint64_t taken = 0;
+  const std::vector<LoadedLevel> loaded = deliveries.take();
+  EXPECT_EQ(loaded.size(), 4u);
+  for (const LoadedLevel& level : loaded) {
+    for (const DeviceProbe& probe : level.probes) taken += device_bytes(probe);
+  }
   const StreamerStatistics& s = streamer.statistics();
   EXPECT_EQ(s.bytes_read, m.bytes_disk());
   EXPECT_EQ(s.levels_loaded, 4u);
   EXPECT_EQ(s.rooms_loaded, 2u);
-  EXPECT_EQ(s.device_bytes, m.bytes_device());
+  EXPECT_EQ(s.device_bytes, taken);
+  EXPECT_NEAR(static_cast<double>(taken), static_cast<double>(m.bytes_device()), 8.0 * kMostPadding_bytes);
+  EXPECT_EQ(s.levels_refused, 0u);
+  EXPECT_TRUE(streamer.loads().empty()) << "nobody asked for them";
   EXPECT_EQ(s.need_to_resident_ns.size(), 4u);
   for (const std::int64_t ns : s.need_to_resident_ns) EXPECT_GT(ns, 0);
   EXPECT_GT(s.coarse_updates, 0u);
@@ -171,7 +202,12 @@ TEST(RoomStreamer, StaysWithinTheBudgetAndEvictsWhatIsBehind) {
   std::mutex mutex;
   std::set<LevelKey> on_device;
   StreamerOptions options;
-  options.residency.budget_bytes = 6 * 8000 + 2 * 16000;
+  std::uint64_t coarse = 0, fine = 0;
+  for (const RoomEntry& room : m.rooms) {
+    coarse += planned_bytes(room, room.levels[0]);
+    fine = std::max(fine, planned_bytes(room, room.levels[1]));
+  }
+  options.residency.budget_bytes = coarse + 2 * fine;
   options.loader.threads = 2;
   RoomStreamer streamer(
       m, source,
@@ -191,6 +227,53 @@ TEST(RoomStreamer, StaysWithinTheBudgetAndEvictsWhatIsBehind) {
   }
   EXPECT_LE(streamer.statistics().device_bytes_max, options.residency.budget_bytes);
   EXPECT_FALSE(on_device.contains({0, 1}));
+}
+
+TEST(RoomStreamer, APackThatStatesTooLittleStaysWithinTheBudgetAndIsSaidSo) {
+  const TemporaryFolder folder("streamer-lying");
+  Manifest m = write_small_pack(folder.path(), 6);
+  const std::uint64_t fine = planned_bytes(m.rooms[0], m.rooms[0].levels[1]);
+  std::uint64_t coarse = 0;
+  for (RoomEntry& room : m.rooms) {
+    coarse += planned_bytes(room, room.levels[0]);
+    room.levels[1].bytes_device = 0;  // its 512 cut cells are not counted
+  }
+  const FolderSource source(folder.path());
+  std::mutex mutex;
+  std::map<LevelKey, std::uint64_t> on_device;
+  StreamerOptions options;
+  options.residency.budget_bytes = coarse + fine + fine / 2;
+  options.loader.threads = 2;
+  options.keep_loads = true;
+  RoomStreamer streamer(
+      m, source,
+      [&](LoadedLevel&& loaded) {
+        const std::lock_guard lock(mutex);
+        std::uint64_t& bytes = on_device[{loaded.room, loaded.level}];
+        for (const DeviceProbe& probe : loaded.probes) bytes += device_bytes(probe);
+        std::uint64_t sum = 0;
+        for (const auto& [key, size] : on_device) sum += size;
+        EXPECT_LE(sum, options.residency.budget_bytes);
+      },
+      [&](LevelKey key) {
+        const std::lock_guard lock(mutex);
+        on_device.erase(key);
+      },
+      options);
+  for (double x = 1.0; x < 29.0; x += 0.25) {
+    ASSERT_TRUE(streamer.settle({{x, 1.6, -2.0}, {1.0, 0.0, 0.0}}, 10s));
+    const std::lock_guard lock(mutex);
+    EXPECT_TRUE(on_device.contains({streamer.decision().room, 1})) << x;
+  }
+  EXPECT_EQ(streamer.statistics().levels_refused, 6u) << "each once";
+  const auto errors = streamer.take_errors();
+  ASSERT_EQ(errors.size(), 6u);
+  EXPECT_THAT(errors[0], HasSubstr("where the pack states 0"));
+  EXPECT_LE(streamer.statistics().device_bytes_max, options.residency.budget_bytes);
+  std::size_t refused = 0;
+  for (const LoadResult& load : streamer.loads()) refused += load.refused;
+  EXPECT_EQ(refused, 6u);
+  EXPECT_EQ(streamer.loads().size() - refused, streamer.statistics().levels_loaded);
 }
 
 TEST(RoomStreamer, UpdateNeverWaitsForTheLoader) {

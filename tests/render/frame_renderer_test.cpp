@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstring>
 #include <ctime>
 #include <thread>
 
@@ -13,6 +15,7 @@
 #include "render/readback.h"
 #include "render/view.h"
 #include "shaders/shared/display_transform.h"
+#include "shaders/shared/view_depth.h"
 #include "shaders/shared/view_ray.h"
 
 namespace probewalk {
@@ -49,9 +52,9 @@ class FrameRendererTest : public test::GpuTest {
     target.final_layout = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
     return target;
   }
-  static std::vector<ViewConstants> views_at(glm::dvec3 head_m, std::uint32_t count) {
+  static std::vector<ViewConstants> views_at(glm::dvec3 head_m, std::uint32_t count, double yaw_rad = 0.4) {
     std::vector<ViewConstants> views;
-    const glm::dquat turned = glm::angleAxis(0.4, glm::dvec3(0, 1, 0)) * glm::angleAxis(-0.2, glm::dvec3(1, 0, 0));
+    const glm::dquat turned = glm::angleAxis(yaw_rad, glm::dvec3(0, 1, 0)) * glm::angleAxis(-0.2, glm::dvec3(1, 0, 0));
     for (std::uint32_t k = 0; k < count; ++k) {
       const ViewFov fov{-0.7f, 0.6f + 0.05f * static_cast<float>(k), 0.5f, -0.55f};
       views.push_back(view_constants(head_m + glm::dvec3(0.063 * k, 0, 0), turned, fov, static_cast<int>(kExtent.width)));
@@ -194,6 +197,125 @@ TEST_F(FrameRendererTest, KeepsTwoFramesInFlightWhileRoomsStream) {
   while (renderer.take_times()) ++times_taken;
   EXPECT_EQ(times_taken, 20u);
   EXPECT_EQ(streaming.device_bytes(), 0u);
+}
+
+// Depth read back, a map a layer.
+std::vector<std::vector<float>> read_depth(const Device& device, const Image& image) {
+  const ImageOptions& options = image.options();
+  const auto bytes = read_image(device, image.handle(), VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL, options.format,
+                                options.extent_px, options.layers);
+  const std::size_t texels = std::size_t{options.extent_px.width} * options.extent_px.height;
+  std::vector<std::vector<float>> layers(options.layers, std::vector<float>(texels));
+  for (std::size_t i = 0; i < texels * options.layers; ++i) {
+    float& value = layers[i / texels][i % texels];
+    if (options.format == VK_FORMAT_D32_SFLOAT) {
+      std::memcpy(&value, bytes.data() + 4 * i, 4);
+    } else {
+      std::uint16_t code = 0;
+      std::memcpy(&code, bytes.data() + 2 * i, 2);
+      value = static_cast<float>(code) / 65535.0f;
+    }
+  }
+  return layers;
+}
+
+TEST_F(FrameRendererTest, WritesTheDepthOfWhatIsSeen) {
+  settings.depth = {1.2f, 3.1f};  // so that the room has things nearer and things farther
+  for (const VkFormat format : {VK_FORMAT_D32_SFLOAT, VK_FORMAT_D16_UNORM}) {
+    FrameRendererOptions dials = options(2);
+    dials.depth_format = format;
+    FrameRenderer renderer(device, store, dials);
+    const Image image = make_target(2);
+    const Image depth(device, {format, kExtent, 2,
+                               VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT});
+    FrameTarget target = target_of(image);
+    target.depth_image = depth.handle();
+    target.depth_format = format;
+    // Into the room, and at its window, where rays miss.
+    std::size_t between = 0, at_near = 0, at_far = 0, misses = 0;
+    for (const double yaw_rad : {0.4, -1.6}) {
+      const auto views = views_at({0.3, 1.5, 0.9}, 2, yaw_rad);
+      for (int again = 0; again < 2; ++again) {  // the second frame finds the image as the first left it
+        renderer.record(target);
+        renderer.write(views, settings);
+        renderer.submit();
+      }
+      renderer.wait();
+      const auto distances = read_floats(device, renderer.tracer().distance());
+      const auto written = read_depth(device, depth);
+      const double step = format == VK_FORMAT_D32_SFLOAT ? 1e-6 : 1.0 / 65535.0;
+      for (std::size_t view = 0; view < 2; ++view) {
+        for (std::size_t at = 0; at < distances[view].size(); ++at) {
+          const glm::ivec2 pixel(static_cast<int>(at % kExtent.width), static_cast<int>(at / kExtent.width));
+          // The pixel's ray and the view's axis, in double and without the shader's own functions.
+          const glm::dvec3 ray(view_ray(views[view], pixel, {kExtent.width, kExtent.height}));
+          const double z_m = -glm::dot(ray, glm::dvec3(views[view].world_from_eye_z)) * distances[view][at];
+          const double near_m = settings.depth.near_m, far_m = settings.depth.far_m;
+          const double clamped_m = std::clamp(z_m, near_m, far_m);
+          const double expected = (1.0 / clamped_m - 1.0 / far_m) / (1.0 / near_m - 1.0 / far_m);
+          ASSERT_NEAR(written[view][at], expected, step) << z_m << " m";
+          if (z_m < near_m * 0.999) {
+            ASSERT_EQ(written[view][at], 1.0f);
+            ++at_near;
+          } else if (z_m > far_m * 1.001) {
+            ASSERT_EQ(written[view][at], 0.0f);
+            ++at_far;
+            misses += distances[view][at] >= kMissDistance_m;
+          } else {
+            ++between;
+          }
+        }
+      }
+    }
+    EXPECT_GT(between, 1000u);
+    EXPECT_GT(at_near, 100u);
+    EXPECT_GT(at_far, misses);
+    EXPECT_GT(misses, 100u);
+  }
+}
+
+TEST_F(FrameRendererTest, DepthChangesNothingOfThePicture) {
+  FrameRenderer plain(device, store, options(2, false));
+  const Image image = make_target(2);
+  const auto views = views_at({0.3, 1.5, 0.9}, 2);
+  const auto expected = draw(plain, image, views);
+  FrameRendererOptions dials = options(2, false);
+  dials.depth_format = VK_FORMAT_D32_SFLOAT;
+  FrameRenderer with_depth(device, store, dials);
+  EXPECT_THROW(with_depth.record(target_of(image)), std::logic_error) << "no depth image";
+  const Image depth(device, {VK_FORMAT_D32_SFLOAT, kExtent, 2, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT});
+  FrameTarget target = target_of(image);
+  target.depth_image = depth.handle();
+  target.depth_format = VK_FORMAT_D32_SFLOAT;
+  EXPECT_THROW(plain.record(target), std::logic_error) << "no depth asked for";
+  with_depth.record(target);
+  with_depth.write(views, settings);
+  with_depth.submit();
+  with_depth.wait();
+  const auto drawn = read_pictures(device, image.handle(), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, kFormat, kExtent, 2);
+  for (int view = 0; view < 2; ++view) EXPECT_EQ(drawn[view].rgb, expected[view].rgb);
+}
+
+TEST(ViewDepth, RunsFromOneAtTheNearPlaneToZeroAtTheFarOne) {
+  for (const float far_m : {10.0f, 100.0f, 33333.3f}) {
+    EXPECT_EQ(view_depth(0.05f, 0.05f, far_m), 1.0f);
+    EXPECT_EQ(view_depth(0.0f, 0.05f, far_m), 1.0f);
+    EXPECT_EQ(view_depth(far_m, 0.05f, far_m), 0.0f);
+    EXPECT_EQ(view_depth(kMissDistance_m, 0.05f, far_m), 0.0f);
+    float last = 1.0f;
+    for (float z_m = 0.06f; z_m < far_m; z_m *= 1.01f) {
+      const float depth = view_depth(z_m, 0.05f, far_m);
+      EXPECT_LT(depth, last);
+      last = depth;
+    }
+  }
+}
+
+TEST(ViewDepth, TheFarPlaneLiesBehindAllThatIsSeen) {
+  const DepthRange house = depth_range_of({{-3.0, 0.0, -4.0}, {9.0, 6.0, 4.0}});
+  EXPECT_GT(house.far_m, glm::length(glm::vec3(12.0f, 6.0f, 8.0f)));
+  EXPECT_LT(house.near_m, 0.1f);
+  EXPECT_GT(depth_range_of({{0.0, 0.0, 0.0}, {0.1, 0.1, 0.1}}).far_m, 5.0f);
 }
 
 TEST_F(FrameRendererTest, RefusesATargetItWasNotMadeFor) {

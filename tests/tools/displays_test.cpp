@@ -111,9 +111,10 @@ TEST(Displays, HeadsetWalkIsFocusedAndTheValidationLayersAreSilent) {
                 : "";
   const RunResult run = run_script(
       folder, layer + "bash \"$with_monado\" null \"$probewalk\" walk \"$pack\" --display auto --eye-size 64x48 "
-                      "--frames 30 --report report --record walked.jsonl --save-frames pictures --save-every 29 --validate");
+                      "--frames 60 --report report --record walked.jsonl --save-frames pictures --save-every 59 --validate");
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_THAT(run.err, HasSubstr("display: headset: Monado"));
+  EXPECT_THAT(run.err, HasSubstr("depth as D32_SFLOAT"));
   EXPECT_THAT(run.err, HasSubstr("FOCUSED"));
   EXPECT_THAT(run.err, HasSubstr("EXITING"));
   EXPECT_THAT(run.err, Not(HasSubstr("error:")));
@@ -124,10 +125,10 @@ TEST(Displays, HeadsetWalkIsFocusedAndTheValidationLayersAreSilent) {
   }
   const json summary = json::parse(read_text(folder / "report" / "summary.json"));
   EXPECT_EQ(summary["display"], "headset");
-  EXPECT_EQ(summary["frames"].get<int>() + summary["warmup_frames"].get<int>(), 30);
+  EXPECT_EQ(summary["frames"].get<int>() + summary["warmup_frames"].get<int>(), 60);
   EXPECT_GT(summary["percentiles"]["prediction_horizon"]["n"].get<int>(), 0);
-  const ImageRgb8 left = read_png(folder / "pictures" / "frame-000029-left.png");
-  EXPECT_NE(left.rgb, read_png(folder / "pictures" / "frame-000029-right.png").rgb);
+  const ImageRgb8 left = read_png(folder / "pictures" / "frame-000059-left.png");
+  EXPECT_NE(left.rgb, read_png(folder / "pictures" / "frame-000059-right.png").rgb);
   EXPECT_GT(*std::max_element(left.rgb.begin(), left.rgb.end()), 100);
 }
 

@@ -9,11 +9,13 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <map>
 
 #include "content/error.h"
 #include "content/image/image.h"
 #include "render/check.h"
 #include "support/room_pack.h"
+#include "support/trace_check.h"
 #include "xr/path.h"
 #include "xr/walk_view.h"
 
@@ -80,6 +82,14 @@ TEST(WalkOffscreen, SubmitsTheFramesItWasAskedForAndReportsEachOfThem) {
   ASSERT_EQ(result.ledger.frames().size(), 40u);
   EXPECT_EQ(lines_of(*options.report / "frames.csv").size(), 41u);
   EXPECT_TRUE(fs::exists(*options.report / "index.html"));
+  const auto trace = nlohmann::json::parse(std::ifstream(*options.report / "trace.json"));
+  EXPECT_THAT(test::trace_faults(trace), testing::IsEmpty());
+  EXPECT_THAT(test::track_names(trace), testing::IsSupersetOf({"frame thread", "loader 1"}));
+  std::map<std::string, int> loads;
+  for (const auto& event : trace["traceEvents"]) ++loads[event["name"].get<std::string>()];
+  EXPECT_EQ(loads["frame"], 40);
+  EXPECT_EQ(loads["load room level 0"] + loads["load room level 1"], 2);
+  for (const char* part : {"read", "decompress", "upload"}) EXPECT_EQ(loads[part], 2) << part;
   const Summary summary = result.ledger.summary();
   EXPECT_EQ(summary.frames + summary.warmup_frames, 40u);
   EXPECT_EQ(summary.warmup_frames, 4u);
@@ -87,6 +97,7 @@ TEST(WalkOffscreen, SubmitsTheFramesItWasAskedForAndReportsEachOfThem) {
 
 TEST(WalkOffscreen, RecordsEveryStageInOrder) {
   const WalkResult result = walk_quietly(offscreen(12));
+  EXPECT_TRUE(result.info.streaming.loads.empty()) << "no report was asked for";
   std::int64_t last_end = 0;
   for (const FrameRecord& frame : result.ledger.frames()) {
     EXPECT_GE(frame.wait.begin, last_end);

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstdio>
 #include <iterator>
-#include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -30,7 +29,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr unsigned kMaxSide_px = 8192;
-const std::vector<std::string> kAovNames{"radiance", "distance", "lookups", "probe", "class"};
+const std::vector<std::string> kAovNames{"radiance", "distance", "depth", "lookups", "probe", "class"};
 
 struct RenderArguments {
   std::string pack, output;
@@ -98,11 +97,9 @@ std::vector<std::vector<glm::vec3>> texels(const std::vector<ImageRgbF>& images)
 
 // An auxiliary map of the whole picture.
 std::vector<float> aov_map(const Still& still, const std::string& name, VkExtent2D extent) {
-  if (name == "distance") {
-    return joined(still.distance_m, extent, [](float t) {
-      return t >= kMissDistance_m ? std::numeric_limits<float>::infinity() : t;
-    });
-  }
+  const auto metres = [](float m) { return m; };
+  if (name == "distance") return joined(still.distance_m, extent, metres);
+  if (name == "depth") return joined(still.depth_m, extent, metres);
   const auto count = [&](auto value) { return joined(still.counts, extent, value); };
   if (name == "lookups") return count([](glm::uvec4 c) { return static_cast<float>(c.z); });
   if (name == "probe") return count([](glm::uvec4 c) { return static_cast<float>(static_cast<std::int32_t>(c.y)); });
@@ -232,7 +229,9 @@ void RenderJob::write(const fs::path& file, const std::vector<ImageRgb8>& shown,
 void RenderJob::write_still(const fs::path& file, const Still& still) const {
   std::vector<ExrChannel> maps;
   for (const std::string& name : arguments_.aov) {
-    if (name != "radiance") maps.push_back({name, aov_map(still, name, extent_)});
+    // Z is what OpenEXR's convention calls the distance along the view's axis.
+    const std::string channel = is_exr_ && name == "depth" ? "Z" : name;
+    if (name != "radiance") maps.push_back({channel, aov_map(still, name, extent_)});
   }
   write(file, still.shown, still.radiance_cd_m2, maps);
   if (is_exr_) return;
@@ -349,7 +348,9 @@ void add_render_command(CLI::App& app, CommonOptions& common) {
   CLI::App* command = app.add_subcommand("render", "Draw stills of a pack, or the same picture from the triangles");
   command->footer(
       "A PNG is what the display would get (exposure, tone curve, sRGB); an EXR is linear radiance in cd/m^2. With --aov a\n"
-      "PNG gets false-colour pictures beside it (OUT-distance.png, ...), an EXR gets channels. With --reference, OUT is\n"
+      "PNG gets false-colour pictures beside it (OUT-distance.png, ...), an EXR gets channels of those names: distance is\n"
+      "metres along each pixel's ray, depth metres along the view's axis (channel Z in an EXR), both infinite where the\n"
+      "sky is; where the probes do not know what is there, both tell how far the way is free. With --reference, OUT is\n"
       "cast at the triangles, OUT-probes is the same picture from the probes, OUT-difference.png the error as an eye sees\n"
       "it (FLIP), and FLIP and PSNR are printed. With --poses there is a picture a line of the file, OUT-NAME, and with\n"
       "--reference a table of them; the scene's light is built once for all.\n\n"
@@ -369,7 +370,7 @@ void add_render_command(CLI::App& app, CommonOptions& common) {
       ->check(CLI::Range(1.0, 170.0))->capture_default_str();
   command->add_flag("--stereo", arguments->stereo, "Left and right eye in one picture");
   command->add_option("--ipd", arguments->ipd_m, "Metres between the eyes")->check(CLI::Range(0.0, 1.0))->capture_default_str();
-  command->add_option("--aov", arguments->aov, "Auxiliary pictures: radiance,distance,lookups,probe,class")
+  command->add_option("--aov", arguments->aov, "Auxiliary pictures: radiance,distance,depth,lookups,probe,class")
       ->delimiter(',')->check(CLI::IsMember(kAovNames));
   arguments->ev_option = command->add_option("--ev", arguments->ev, "Exposure value at ISO 100 (default: the pack's)")
       ->check(CLI::Range(-30.0, 30.0));

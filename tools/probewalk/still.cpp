@@ -1,17 +1,33 @@
 #include "tools/probewalk/still.h"
 
+#include <algorithm>
 #include <chrono>
+#include <limits>
 #include <utility>
 
 #include "content/error.h"
 #include "content/stream/room_streamer.h"
 #include "render/readback.h"
+#include "shaders/shared/view_ray.h"
 
 namespace probewalk {
 namespace {
 
 constexpr auto kPatience = std::chrono::minutes(5);
 constexpr VkFormat kFormat = VK_FORMAT_R8G8B8A8_SRGB;
+
+// Distances along the rays of a view to distances along its axis.
+std::vector<float> along_axis(const std::vector<float>& distance_m, const ViewConstants& view, VkExtent2D extent) {
+  const glm::ivec2 size_px(extent.width, extent.height);
+  std::vector<float> depth_m;
+  depth_m.reserve(distance_m.size());
+  for (int y = 0; y < size_px.y; ++y) {
+    for (int x = 0; x < size_px.x; ++x) {
+      depth_m.push_back(distance_m[depth_m.size()] * view_ray_cosine(view, {x, y}, size_px));
+    }
+  }
+  return depth_m;
+}
 
 }  // namespace
 
@@ -81,6 +97,12 @@ Still StillDrawer::draw(glm::dvec3 head_m, const std::vector<ViewConstants>& vie
     for (glm::vec3& color : image.rgb) color /= settings.trace.radiance_scale;
   }
   still.distance_m = read_floats(own.device, own.renderer.tracer().distance());
+  for (std::size_t view = 0; view < views.size(); ++view) {
+    std::vector<float>& distance_m = still.distance_m[view];
+    std::replace_if(distance_m.begin(), distance_m.end(), [](float t) { return t >= kMissDistance_m; },
+                    std::numeric_limits<float>::infinity());
+    still.depth_m.push_back(along_axis(distance_m, views[view], own.extent));
+  }
   still.counts = read_uints(own.device, own.renderer.tracer().aov());
   still.times = own.renderer.take_times().value();
   return still;

@@ -17,7 +17,8 @@ namespace probewalk {
 struct Still {
   std::vector<ImageRgb8> shown;                 // as the display gets it
   std::vector<ImageRgbF> radiance_cd_m2;        // linear, not exposed
-  std::vector<std::vector<float>> distance_m;   // kMissDistance_m = miss
+  std::vector<std::vector<float>> distance_m;   // along each pixel's ray; infinity = miss
+  std::vector<std::vector<float>> depth_m;      // along the view's axis; infinity = miss
   std::vector<std::vector<glm::uvec4>> counts;  // as StereoTracer::aov
   FrameGpuTimes times;
 };

@@ -50,7 +50,7 @@ void make_run_folder(const std::filesystem::path& directory) {
 void write_run(const std::filesystem::path& directory, const Ledger& ledger, const RunInfo& info) {
   make_run_folder(directory);
   write_text(directory / "frames.csv", frames_csv(ledger));
-  write_text(directory / "trace.json", trace_json(ledger));
+  write_text(directory / "trace.json", trace_json(ledger, info.streaming));
   const Run run{name_of(directory), info, ledger};
   write_text(directory / "index.html", report_page({&run, 1}));
   write_text(directory / "summary.json", summary_json(ledger, info));  // last: who finds it finds the others

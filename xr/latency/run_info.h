@@ -26,10 +26,26 @@ struct DeviceFacts {
   bool is_software = false;
 };
 
+// One room's chunk on its way to the device, by one loader thread. CLOCK_MONOTONIC; 0 = it did not come to that.
+struct LevelLoad {
+  std::string room;  // its id
+  std::uint32_t level = 0;
+  unsigned thread = 0;
+  std::string failure;  // empty = it arrived
+  std::uint64_t bytes_disk = 0;
+  std::uint64_t bytes_device = 0;
+  std::int64_t requested_ns = 0;
+  std::int64_t started_ns = 0;
+  std::int64_t read_ns = 0;      // from the disk, hash checked
+  std::int64_t decoded_ns = 0;   // decompressed, made the device's words
+  std::int64_t finished_ns = 0;  // handed to the device
+};
+
 struct StreamingFacts {
   std::uint64_t rooms_loaded = 0;
   std::uint64_t device_budget_bytes = 0;          // 0 = none was set
   std::vector<std::int64_t> need_to_resident_ns;  // one a room or level: first wanted to first drawable
+  std::vector<LevelLoad> loads;                   // for trace.json; kept only where a report is asked for
 };
 
 // A display that went away, and where the walk went on.

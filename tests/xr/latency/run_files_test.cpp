@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "content/error.h"
+#include "support/trace_check.h"
 #include "xr/latency/frames_csv.h"
 #include "xr/latency/summary_json.h"
 #include "xr/latency/synthetic_run.h"
@@ -26,7 +27,10 @@ Ledger eventful_run() {
   Ledger ledger(LedgerOptions{.warmup_frames = 20});
   for (std::size_t i = 0; i < 300; ++i) {
     FrameRecord f = synthetic_frame(i);
-    if (i == 120) f.record.end += 35 * kMs;
+    if (i == 120) {
+      f.record.end += 35 * kMs;
+      for (Interval* later : {&f.locate_late, &f.submit, &f.end}) *later = {later->begin + 35 * kMs, later->end + 35 * kMs};
+    }
     if (i > 120) delay(f, 40 * kMs);
     f.discarded = i == 200;
     f.bytes_uploaded = i % 10 == 0 ? 4096 : 0;
@@ -175,12 +179,10 @@ TEST_F(RunFiles, DamagedRunsAreRefusedByFileAndPlace) {
 TEST_F(RunFiles, TraceIsWellFormedAndHoldsEveryCall) {
   const Ledger ledger = eventful_run();
   const json trace = json::parse(trace_json(ledger));
+  EXPECT_THAT(test::trace_faults(trace), testing::IsEmpty());
+  EXPECT_THAT(test::track_names(trace), testing::ElementsAre("frame thread", "device", "mirror"));
   std::size_t waits = 0, device = 0, missed = 0, discarded = 0;
   for (const json& event : trace["traceEvents"]) {
-    if (event["ph"] == "X") {
-      EXPECT_GE(event["dur"].get<double>(), 0.0);
-      EXPECT_GE(event["ts"].get<double>(), 0.0);
-    }
     waits += event["name"] == "wait" ? 1 : 0;
     device += event["name"] == "gpu_trace" ? 1 : 0;
     missed += event["name"] == "missed 4" ? 1 : 0;
@@ -196,6 +198,59 @@ TEST_F(RunFiles, TraceIsWellFormedAndHoldsEveryCall) {
   frame.clock_calibrated = false;
   uncalibrated.add(frame);
   EXPECT_THAT(trace_json(uncalibrated), Not(HasSubstr("\"gpu_trace\"")));
+}
+
+TEST_F(RunFiles, TraceShowsEachLoadOnItsThread) {
+  const std::int64_t t = 1'000 * kMs;
+  StreamingFacts streaming;
+  streaming.loads = {{"hall", 1, 0, "", 1000, 4000, t, t + 1, t + 3, t + 6, t + 10},
+                     {"b\"room\xff", 0, 1, "", 10, 40, t, t + 2, t + 3, t + 4, t + 5},
+                     {"hall", 2, 0, "damaged", 0, 0, t, t + 10, 0, 0, t + 12},
+                     {"attic", 0, 1, "", 10, 40, t, t + 5, t + 5, t + 5, t + 5}};
+  const json trace = json::parse(trace_json(eventful_run(), streaming));
+  EXPECT_THAT(test::trace_faults(trace), testing::IsEmpty());
+  EXPECT_THAT(test::track_names(trace), testing::ElementsAre("frame thread", "device", "mirror", "loader 1", "loader 2"));
+  std::vector<std::string> hall;
+  for (const json& event : trace["traceEvents"]) {
+    if (event["ph"] != "X" || event["args"].value("room", "") != "hall") continue;
+    hall.push_back(event["name"].get<std::string>() + " " + std::to_string(std::llround(event["dur"].get<double>() * 1e3)));
+    if (event["name"] == "load hall level 2") {
+      EXPECT_EQ(event["args"]["failure"], "damaged");
+      EXPECT_EQ(event["args"]["level"], 2);
+      EXPECT_EQ(event["args"]["queued_ns"], 10);
+    }
+  }
+  EXPECT_THAT(hall, testing::ElementsAre("load hall level 1 9", "read 2", "decompress 3", "upload 4", "load hall level 2 2"));
+  // Loads alone are a trace, too.
+  EXPECT_THAT(test::trace_faults(json::parse(trace_json(Ledger{}, streaming))), testing::IsEmpty());
+  EXPECT_THAT(test::trace_faults(json::parse(trace_json(Ledger{}))), testing::IsEmpty());
+}
+
+TEST_F(RunFiles, ADeviceClockSetAnewTearsNoSpans) {
+  Ledger ledger;
+  for (std::size_t i = 0; i < 3; ++i) {
+    FrameRecord f = synthetic_frame(i);
+    if (i == 1) f.gpu.begin = f.gpu_trace.begin = ledger.frames()[0].gpu.end - 30;
+    ledger.add(f);
+  }
+  EXPECT_THAT(test::trace_faults(json::parse(trace_json(ledger))), testing::IsEmpty());
+}
+
+TEST(TraceCheck, FindsWhatIsWrong) {
+  const json name = {{"name", "thread_name"}, {"ph", "M"}, {"pid", 1}, {"tid", 1}, {"ts", 0}, {"args", {{"name", "a"}}}};
+  const auto span = [](double ts, double dur) {
+    return json{{"name", "s"}, {"ph", "X"}, {"pid", 1}, {"tid", 1}, {"ts", ts}, {"dur", dur}};
+  };
+  const auto faults = [](const std::vector<json>& events) { return test::trace_faults({{"traceEvents", events}}).size(); };
+  EXPECT_EQ(faults({name, span(0, 10), span(2, 8), span(2, 3), span(10, 1)}), 0u);
+  EXPECT_EQ(faults({name, span(0, 10), span(2, 8.001)}), 1u);
+  EXPECT_EQ(faults({name, span(0, -1)}), 1u);
+  EXPECT_EQ(faults({span(0, 1)}), 1u) << "no name";
+  EXPECT_EQ(faults({name, name}), 1u) << "two names";
+  EXPECT_EQ(faults({{{"name", "c"}, {"ph", "C"}, {"pid", 1}, {"tid", 0}, {"ts", 0}}}), 1u) << "no args";
+  EXPECT_EQ(faults({{{"name", "m"}, {"ph", "i"}, {"pid", 1}, {"tid", 1}, {"ts", 0}}}), 1u) << "no scope";
+  EXPECT_EQ(faults({{{"name", "m"}, {"ph", "C"}, {"pid", 1}, {"ts", 0}}}), 1u) << "no tid";
+  EXPECT_EQ(test::trace_faults(json::array()).size(), 1u);
 }
 
 TEST_F(RunFiles, ThePageIsWholeAndSaysWhatItMust) {

@@ -1,0 +1,48 @@
+// A swapchain of the runtime: array images with one layer a view, of which one at a time is ours to draw into.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "render/device.h"
+#include "xr/openxr_api.h"
+
+namespace probewalk {
+
+struct OpenXrSwapchainOptions {
+  VkFormat format = VK_FORMAT_UNDEFINED;
+  XrSwapchainUsageFlags usage = 0;
+  VkExtent2D extent{};
+  std::uint32_t layers = 0;
+};
+
+// What came of a call, and its name for a message.
+struct OpenXrOutcome {
+  XrResult result = XR_SUCCESS;
+  const char* call = "";
+};
+
+class OpenXrSwapchain {
+ public:
+  // Throws NoDevice when the runtime refuses.
+  OpenXrSwapchain(XrSession session, const OpenXrSwapchainOptions& options);
+
+  // Takes the next image and waits until the compositor has let go of it, at most two seconds: then
+  // XR_TIMEOUT_EXPIRED. The image is held only after XR_SUCCESS.
+  OpenXrOutcome acquire(const Device& device);
+  // Gives the image back, if one is held. With the device's queue locked.
+  OpenXrOutcome release();
+  // The image held; VK_NULL_HANDLE when none is.
+  VkImage image() const { return held_; }
+
+  // All of a layer, as the layers of a frame state it.
+  XrSwapchainSubImage layer(std::uint32_t view) const;
+
+ private:
+  XrOwned<XrSwapchain, xrDestroySwapchain> handle_;
+  VkExtent2D extent_{};
+  std::vector<VkImage> images_;
+  VkImage held_ = VK_NULL_HANDLE;
+};
+
+}  // namespace probewalk
