@@ -67,6 +67,7 @@ RunInfo run_info(const WalkOptions& options, const Display& display) {
   info.eye_height = display.source->view_extent().height;
   info.views = display.source->view_count();
   info.method = "octant-affine";
+  info.samples = options.samples;
   info.pack = options.pack.filename().empty() ? options.pack.parent_path().filename() : options.pack.filename();
   info.build = read_build_info();
   info.started_utc = utc_now();
@@ -86,7 +87,7 @@ class Walk {
         settle_(options.settle.value_or(source_.kind() == "offscreen")),
         rooms_(pack, *display.device, {options.budget_bytes, options.loader_threads}, progress),
         renderer_(*display.device, rooms_.store(),
-                  {.tracer = {.extent_px = source_.view_extent(), .views = source_.view_count()},
+                  {.tracer = {.extent_px = source_.view_extent(), .views = source_.view_count(), .samples = options.samples},
                    .target_format = source_.color_format()}),
         ledger_({.warmup_frames = std::min(kWarmupFrames, frames.value_or(10 * kWarmupFrames) / 10),
                  .has_deadlines = source_.kind() != "offscreen"}),

@@ -16,7 +16,8 @@ constexpr VkFormat kFormat = VK_FORMAT_R8G8B8A8_SRGB;
 }  // namespace
 
 struct StillDrawer::Impl {
-  Impl(const Pack& pack_in, const Device& device_in, VkExtent2D extent_px, std::uint32_t view_count, Progress& progress_in)
+  Impl(const Pack& pack_in, const Device& device_in, VkExtent2D extent_px, std::uint32_t view_count,
+       std::uint32_t samples, Progress& progress_in)
       : pack(pack_in),
         device(device_in),
         progress(progress_in),
@@ -25,7 +26,7 @@ struct StillDrawer::Impl {
         store(device, pack.manifest().grid, static_cast<std::uint32_t>(pack.manifest().probe_positions_m.size()),
               {.frame_slots = kFrameSlots}),
         picture(device, {kFormat, extent, views, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT}),
-        renderer(device, store, {{extent, views, true}, kFormat}),
+        renderer(device, store, {{extent, views, true, samples}, kFormat}),
         source(pack.path()),
         streamer(
             pack.manifest(), source,
@@ -54,8 +55,8 @@ struct StillDrawer::Impl {
 };
 
 StillDrawer::StillDrawer(const Pack& pack, const Device& device, VkExtent2D extent_px, std::uint32_t view_count,
-                         Progress& progress)
-    : impl_(std::make_unique<Impl>(pack, device, extent_px, view_count, progress)) {}
+                         std::uint32_t samples, Progress& progress)
+    : impl_(std::make_unique<Impl>(pack, device, extent_px, view_count, samples, progress)) {}
 
 StillDrawer::~StillDrawer() = default;
 
