@@ -35,6 +35,7 @@ struct PushConstants {
   VkDeviceAddress constants = 0;  // where the rest lies
   std::uint32_t view = 0;         // that a draw is for
   std::uint32_t reserved = 0;
+  VkDeviceAddress list = 0;       // of edge pixels, where a pass fills or reads one (shaders/shared/edge_list.h)
 };
 
 // Owns a pipeline and its layout.

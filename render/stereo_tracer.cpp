@@ -30,7 +30,10 @@ Image make_output(const Device& device, const TracerOptions& options, VkFormat f
                         VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT});
 }
 
-TracerOptions one_texel(const TracerOptions& options) { return {{1, 1}, options.views, options.aov}; }
+TracerOptions one_texel(TracerOptions options) {
+  options.extent_px = {1, 1};
+  return options;
+}
 
 }  // namespace
 
@@ -43,6 +46,10 @@ StereoTracer::StereoTracer(const Device& device, const TracerOptions& options)
       images_(device, VK_SHADER_STAGE_COMPUTE_BIT, {radiance_.view(), distance_.view(), aov_.view()}),
       pipeline_(Pipeline::compute(device, &images_, spirv::k_trace_stereo_comp,
                                   {options.aov ? VK_TRUE : VK_FALSE, interleave_})) {
+  if (options.samples != 1) {
+    edges_ = std::make_unique<EdgeSampler>(
+        device, images_, EdgeSamplerOptions{options.extent_px, options.views, options.aov, options.samples, interleave_});
+  }
   // The images stay in the general layout for good.
   run_commands(device, [&](VkCommandBuffer commands) {
     for (const Image* image : {&radiance_, &distance_, &aov_}) {
@@ -67,6 +74,8 @@ void StereoTracer::record(VkCommandBuffer commands, VkDeviceAddress frame) const
   pipeline_.bind(commands, &images_, {frame});
   const std::uint32_t columns = (options_.extent_px.width + kTile - 1) / kTile;
   vkCmdDispatch(commands, columns, tile_rows(options_, interleave_), options_.views);
+
+  if (edges_) edges_->record(commands, frame);
 
   barrier.srcStageMask = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
   barrier.srcAccessMask = VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT;

@@ -4,8 +4,10 @@
 #include <volk.h>
 
 #include <cstdint>
+#include <memory>
 
 #include "render/device.h"
+#include "render/edge_sampler.h"
 #include "render/image.h"
 #include "render/pipeline.h"
 
@@ -15,6 +17,7 @@ struct TracerOptions {
   VkExtent2D extent_px{};   // of each view
   std::uint32_t views = 2;  // 1 .. kMaxViews
   bool aov = false;         // also write class, probe and counts
+  std::uint32_t samples = 1;  // rays of a pixel at an edge: 1, 2 or 4
 };
 
 // Distance of a miss, metres.
@@ -30,9 +33,13 @@ class StereoTracer {
 
   const TracerOptions& options() const { return options_; }
   // One layer a view.
-  const Image& radiance() const { return radiance_; }  // RGBA16F, linear, times radiance_scale; alpha 1
-  const Image& distance() const { return distance_; }  // R32F, metres along the ray; kMissDistance_m = miss
-  // RGBA32UI: class, probe (0xffffffff = none), look-ups, tries | attribute reads << 16. One texel without options().aov.
+  // RGBA16F, linear, times radiance_scale; alpha 1. Of a pixel with several rays the radiance that is shown as they are
+  // on average.
+  const Image& radiance() const { return radiance_; }
+  // R32F, metres along the ray through the pixel's centre; kMissDistance_m = miss.
+  const Image& distance() const { return distance_; }
+  // RGBA32UI: class, probe (0xffffffff = none) of the ray through the pixel's centre; look-ups, tries | rays << 8 |
+  // attribute reads << 16 of all its rays. One texel without options().aov.
   const Image& aov() const { return aov_; }
 
  private:
@@ -41,6 +48,7 @@ class StereoTracer {
   Image radiance_, distance_, aov_;
   StorageImageSet images_;
   Pipeline pipeline_;
+  std::unique_ptr<EdgeSampler> edges_;  // with more than one sample
 };
 
 }  // namespace probewalk

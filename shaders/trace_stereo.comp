@@ -50,6 +50,6 @@ void main() {
   imageStore(distance_image, texel, vec4(answer.t));
   if (kWithAov) {
     imageStore(aov_image, texel,
-               uvec4(uint(answer.cls), uint(answer.probe), answer.lookups, answer.tries | reads << 16));
+               uvec4(uint(answer.cls), uint(answer.probe), answer.lookups, answer.tries | 1u << 8 | reads << 16));
   }
 }

@@ -55,6 +55,7 @@ RunInfo run_info(const WalkOptions& options, const Display& display) {
   info.eye_height = display.source->view_extent().height;
   info.views = display.source->view_count();
   info.method = "octant-affine";
+  info.samples = options.samples;
   info.pack = options.pack.filename().empty() ? options.pack.parent_path().filename() : options.pack.filename();
   info.build = read_build_info();
   info.started_utc = utc_now();

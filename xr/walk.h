@@ -27,6 +27,7 @@ struct WalkOptions {
   std::optional<bool> settle;                    // wait for the rooms that each pose wants; default: offscreen only
   std::uint64_t budget_bytes = kUnlimitedBudget; // device memory for probes
   unsigned loader_threads = 1;
+  std::uint32_t samples = 1;                     // rays of a pixel at an edge: 1, 2 or 4
   std::optional<double> exposure_ev;             // default: the pack's
   std::string command;                           // the words that repeat the walk, for the report
   DisplayOpener open_display;                    // how the first display is opened; empty = probewalk::open_display

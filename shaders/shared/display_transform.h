@@ -16,10 +16,12 @@ PW_SHARED_BEGIN
 inline float pw_min(float a, float b) { return std::min(a, b); }
 inline float pw_max(float a, float b) { return std::max(a, b); }
 inline float pw_pow(float a, float b) { return std::pow(a, b); }
+inline float pw_sqrt(float a) { return std::sqrt(a); }
 #else
 #define pw_min min
 #define pw_max max
 #define pw_pow pow
+#define pw_sqrt sqrt
 #endif
 
 PW_CONSTANT float kToneStart = 0.76f;         // 0.8 - F90: where compression starts
@@ -36,6 +38,22 @@ PW_FUNCTION pw_vec3 tone_curve(pw_vec3 color) {
   color = color * (new_peak / peak);
   float keep = 1.0f / (kToneDesaturation * (peak - new_peak) + 1.0f);
   return color * keep + pw_vec3(new_peak * (1.0f - keep));
+}
+
+// The color that tone_curve shows as `shown`; of several the darkest, and the most similar where none is.
+PW_FUNCTION pw_vec3 tone_curve_inverse(pw_vec3 shown) {
+  float new_peak = pw_min(pw_max(shown.x, pw_max(shown.y, shown.z)), 0.999999f);
+  pw_vec3 color = shown;
+  if (new_peak >= kToneStart) {
+    float span = 1.0f - kToneStart;
+    float peak = span * span / (1.0f - new_peak) - span + kToneStart;
+    float keep = 1.0f / (kToneDesaturation * (peak - new_peak) + 1.0f);
+    color = (shown - pw_vec3(new_peak * (1.0f - keep))) * (peak / (new_peak * keep));
+  }
+  color = pw_vec3(pw_max(color.x, 0.0f), pw_max(color.y, 0.0f), pw_max(color.z, 0.0f));
+  float low = pw_min(color.x, pw_min(color.y, color.z));
+  float offset = low < 0.04f ? 0.4f * pw_sqrt(low) - low : 0.04f;
+  return color + pw_vec3(offset);
 }
 
 PW_FUNCTION float srgb_encode(float linear) {

@@ -79,7 +79,8 @@ TEST(BadInput, MissingForeignTruncatedPack) {
 TEST(BadInput, WrongOptionsAndCommands) {
   const fs::path dir = fresh_folder("wrong-options");
   for (const std::vector<std::string>& arguments : std::vector<std::vector<std::string>>{
-           {"fly"}, {"bake"}, {"walk", "x.probes", "--display", "hologram"}, {"info", "x.probes", "--such"}}) {
+           {"fly"}, {"bake"}, {"walk", "x.probes", "--display", "hologram"}, {"info", "x.probes", "--such"},
+           {"walk", "x.probes", "--samples", "3"}, {"render", "x.probes", "-o", "x.png", "--samples", "many"}}) {
     const RunResult r = run_probewalk(dir, arguments);
     EXPECT_EQ(r.exit_code, 2) << arguments[0];
     EXPECT_NE(r.err, "") << arguments[0];

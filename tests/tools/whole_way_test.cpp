@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <thread>
@@ -138,7 +139,7 @@ TEST(WholeWay, AnInterruptedBakeGoesOn) {
 TEST(WholeWay, AnOffscreenWalkLeavesAReport) {
   const fs::path dir = fresh_folder("walk");
   const RunResult r = run_probewalk(dir, {"walk", sample_pack().string(), "--display", "offscreen", "--frames", "40", "--eye-size", "80x60",
-                                          "--report", (dir / "report").string()});
+                                          "--samples", "2", "--report", (dir / "report").string()});
   ASSERT_EQ(r.exit_code, 0) << r.err;
   const json summary = json::parse(read_text(dir / "report/summary.json"));
   for (const char* key : {"schema", "command", "machine", "device", "runtime", "display", "eye_width", "eye_height", "views", "method", "period_ns",
@@ -148,6 +149,7 @@ TEST(WholeWay, AnOffscreenWalkLeavesAReport) {
   }
   EXPECT_EQ(summary["frames"].get<int>() + summary["warmup_frames"].get<int>(), 40);
   EXPECT_EQ(summary["display"], "offscreen");
+  EXPECT_EQ(summary["samples"], 2);
   for (const char* key : {"frame", "cpu_busy", "cpu_wait", "gpu_busy", "gpu_trace", "prediction_horizon", "deadline_margin", "pose_error_mm", "pose_error_deg"}) {
     ASSERT_TRUE(summary["percentiles"].contains(key)) << key;
     for (const char* p : {"n", "p50", "p90", "p95", "p99", "p999", "max"}) EXPECT_TRUE(summary["percentiles"][key].contains(p)) << key << p;
@@ -163,6 +165,28 @@ TEST(WholeWay, AnOffscreenWalkLeavesAReport) {
   // And the report can be made again from the run's own files.
   EXPECT_EQ(run_probewalk(dir, {"report", (dir / "report").string(), "-o", (dir / "again").string()}).exit_code, 0);
   EXPECT_TRUE(fs::exists(dir / "again/index.html"));
+}
+
+TEST(WholeWay, StillsGetMoreRaysAtEdgesWhenAsked) {
+  const fs::path dir = fresh_folder("samples");
+  std::map<std::string, std::string> pictures;
+  for (const char* samples : {"1", "4"}) {
+    const fs::path picture = dir / (std::string(samples) + ".png");
+    const RunResult r = run_probewalk(dir, {"render", sample_pack().string(), "-o", picture.string(), "--size", "160x120", "--samples", samples,
+                                            "--aov", "rays", "--json"});
+    ASSERT_EQ(r.exit_code, 0) << r.err;
+    const json report = json::parse(r.out);
+    EXPECT_EQ(report["samples"], std::stoi(samples));
+    if (report["samples"] == 1) {
+      EXPECT_EQ(report["rays_mean"], 1.0);
+    } else {
+      EXPECT_GT(report["rays_mean"], 1.02);
+      EXPECT_LT(report["rays_mean"], 3.0);
+    }
+    EXPECT_TRUE(fs::exists(dir / (std::string(samples) + "-rays.png")));
+    pictures[samples] = read_text(picture);
+  }
+  EXPECT_NE(pictures["1"], pictures["4"]);
 }
 
 TEST(WholeWay, StillsAreRepeatableAndNotBlack) {

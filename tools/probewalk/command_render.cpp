@@ -29,7 +29,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr unsigned kMaxSide_px = 8192;
-const std::vector<std::string> kAovNames{"radiance", "distance", "depth", "lookups", "probe", "class"};
+const std::vector<std::string> kAovNames{"radiance", "distance", "depth", "lookups", "probe", "class", "rays"};
 
 struct RenderArguments {
   std::string pack, output;
@@ -40,6 +40,7 @@ struct RenderArguments {
   bool stereo = false;
   double ipd_m = 0.063;
   std::vector<std::string> aov;
+  std::uint32_t samples = 1;
   double ev = 0.0;
   CLI::Option* ev_option = nullptr;
   bool reference = false;
@@ -95,6 +96,9 @@ std::vector<std::vector<glm::vec3>> texels(const std::vector<ImageRgbF>& images)
   return result;
 }
 
+// Rays of a pixel, from its counts (StereoTracer::aov).
+std::uint32_t rays_of(glm::uvec4 counts) { return counts.w >> 8 & 255u; }
+
 // An auxiliary map of the whole picture.
 std::vector<float> aov_map(const Still& still, const std::string& name, VkExtent2D extent) {
   const auto metres = [](float m) { return m; };
@@ -103,6 +107,7 @@ std::vector<float> aov_map(const Still& still, const std::string& name, VkExtent
   const auto count = [&](auto value) { return joined(still.counts, extent, value); };
   if (name == "lookups") return count([](glm::uvec4 c) { return static_cast<float>(c.z); });
   if (name == "probe") return count([](glm::uvec4 c) { return static_cast<float>(static_cast<std::int32_t>(c.y)); });
+  if (name == "rays") return count([](glm::uvec4 c) { return static_cast<float>(rays_of(c)); });
   return count([](glm::uvec4 c) { return static_cast<float>(c.x); });  // class
 }
 
@@ -138,7 +143,7 @@ class RenderJob {
         poses_(chosen_poses()),
         progress_(make_progress(common)),
         device_({}, {.device = common.device}),
-        drawer_(pack_, device_, extent_, arguments.stereo ? 2 : 1, *progress_) {
+        drawer_(pack_, device_, extent_, arguments.stereo ? 2 : 1, arguments.samples, *progress_) {
     if (arguments.reference) {
       const std::optional<double> scale = arguments.scale > 0.0 ? std::optional(arguments.scale) : std::nullopt;
       reference_ = std::make_unique<ReferenceCaster>(arguments.scene, pack_.manifest(), scale, common.threads, *progress_);
@@ -269,11 +274,12 @@ void RenderJob::compare(const fs::path& file, const Views& views, const Still& s
 void RenderJob::count(const Still& still, nlohmann::json& report) const {
   std::vector<std::uint32_t> lookups;
   double sum = 0.0;
-  std::size_t unknown = 0, hits = 0;
+  std::size_t unknown = 0, hits = 0, rays = 0;
   for (const auto& view : still.counts) {
     for (const glm::uvec4& texel : view) {
       lookups.push_back(texel.z);
       sum += texel.z;
+      rays += rays_of(texel);
       hits += texel.x == static_cast<std::uint32_t>(kClassHit);
       unknown += texel.x == static_cast<std::uint32_t>(kClassUnknown);
     }
@@ -283,6 +289,8 @@ void RenderJob::count(const Still& still, nlohmann::json& report) const {
   std::nth_element(lookups.begin(), p99, lookups.end());
   report["hit_fraction"] = share(hits);
   report["unknown_fraction"] = share(unknown);
+  report["samples"] = arguments_.samples;
+  report["rays_mean"] = static_cast<double>(rays) / static_cast<double>(lookups.size());
   report["lookups_mean"] = sum / static_cast<double>(lookups.size());
   report["lookups_p99"] = *p99;
   report["trace_ns"] = still.times.trace.end_ns - still.times.trace.begin_ns;
@@ -370,8 +378,10 @@ void add_render_command(CLI::App& app, CommonOptions& common) {
       ->check(CLI::Range(1.0, 170.0))->capture_default_str();
   command->add_flag("--stereo", arguments->stereo, "Left and right eye in one picture");
   command->add_option("--ipd", arguments->ipd_m, "Metres between the eyes")->check(CLI::Range(0.0, 1.0))->capture_default_str();
-  command->add_option("--aov", arguments->aov, "Auxiliary pictures: radiance,distance,depth,lookups,probe,class")
+  command->add_option("--aov", arguments->aov, "Auxiliary pictures: radiance,distance,depth,lookups,probe,class,rays")
       ->delimiter(',')->check(CLI::IsMember(kAovNames));
+  command->add_option("--samples", arguments->samples, "Rays of a pixel at an edge: 1, 2 or 4")
+      ->check(CLI::IsMember({1, 2, 4}))->capture_default_str();
   arguments->ev_option = command->add_option("--ev", arguments->ev, "Exposure value at ISO 100 (default: the pack's)")
       ->check(CLI::Range(-30.0, 30.0));
   command->add_flag("--reference", arguments->reference, "Cast the picture at the triangles, and compare");

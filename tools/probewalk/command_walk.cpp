@@ -151,6 +151,9 @@ void add_walk_command(CLI::App& app, CommonOptions& common) {
       ->check(CLI::PositiveNumber);
   command->add_option("--eye-size", arguments->eye_size,
                       "Pixels of one eye, WxH (default: what the headset recommends; else 640x720)");
+  command->add_option("--samples", walk_options.samples, "Rays of a pixel at an edge: 1, 2 or 4")
+      ->check(CLI::IsMember({1, 2, 4}))
+      ->capture_default_str();
   command->add_option("--device-budget", arguments->budget_mib, "Device memory for probes, MiB (default: unlimited)")
       ->check(CLI::Range(1ull, 1ull << 24));
   command->add_option("--report", arguments->report, "Write frames.csv, summary.json, trace.json and index.html here");

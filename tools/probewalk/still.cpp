@@ -32,7 +32,8 @@ std::vector<float> along_axis(const std::vector<float>& distance_m, const ViewCo
 }  // namespace
 
 struct StillDrawer::Impl {
-  Impl(const Pack& pack_in, const Device& device_in, VkExtent2D extent_px, std::uint32_t view_count, Progress& progress_in)
+  Impl(const Pack& pack_in, const Device& device_in, VkExtent2D extent_px, std::uint32_t view_count,
+       std::uint32_t samples, Progress& progress_in)
       : pack(pack_in),
         device(device_in),
         progress(progress_in),
@@ -41,7 +42,7 @@ struct StillDrawer::Impl {
         store(device, pack.manifest().grid, static_cast<std::uint32_t>(pack.manifest().probe_positions_m.size()),
               {.frame_slots = kFrameSlots}),
         picture(device, {kFormat, extent, views, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT}),
-        renderer(device, store, {{extent, views, true}, kFormat}),
+        renderer(device, store, {{extent, views, true, samples}, kFormat}),
         source(pack.path()),
         streamer(
             pack.manifest(), source,
@@ -70,8 +71,8 @@ struct StillDrawer::Impl {
 };
 
 StillDrawer::StillDrawer(const Pack& pack, const Device& device, VkExtent2D extent_px, std::uint32_t view_count,
-                         Progress& progress)
-    : impl_(std::make_unique<Impl>(pack, device, extent_px, view_count, progress)) {}
+                         std::uint32_t samples, Progress& progress)
+    : impl_(std::make_unique<Impl>(pack, device, extent_px, view_count, samples, progress)) {}
 
 StillDrawer::~StillDrawer() = default;
 

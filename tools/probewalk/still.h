@@ -26,8 +26,9 @@ struct Still {
 // Keeps the pack's rooms on the device from one picture to the next.
 class StillDrawer {
  public:
-  // All must outlive the drawer. view_count eyes a picture.
-  StillDrawer(const Pack& pack, const Device& device, VkExtent2D extent_px, std::uint32_t view_count, Progress& progress);
+  // All must outlive the drawer. view_count eyes a picture, `samples` rays a pixel at edges (1, 2 or 4).
+  StillDrawer(const Pack& pack, const Device& device, VkExtent2D extent_px, std::uint32_t view_count,
+              std::uint32_t samples, Progress& progress);
   ~StillDrawer();
   StillDrawer(const StillDrawer&) = delete;
   StillDrawer& operator=(const StillDrawer&) = delete;

@@ -158,7 +158,9 @@ const std::vector<Fact>& facts() {
       {"views", [](const Run& r, const Summary&) {
          return fmt::format("{} of {} × {} px", r.info.views, r.info.eye_width, r.info.eye_height);
        }},
-      {"method", [](const Run& r, const Summary&) { return r.info.method; }},
+      {"method", [](const Run& r, const Summary&) {
+         return r.info.method + (r.info.samples > 1 ? fmt::format(", {} rays a pixel at edges", r.info.samples) : "");
+       }},
       {"device", [](const Run& r, const Summary&) {
          return r.info.device.name + (r.info.device.is_software ? " (software rasteriser)" : "");
        }},

@@ -1,0 +1,97 @@
+#include "bench/motion_metrics.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "shaders/shared/view_ray.h"
+
+namespace probewalk::bench {
+namespace {
+
+constexpr float kMiss_m = 1e29f;
+// Two eyes see the same point when their distances to it agree to this share.
+constexpr float kSamePoint = 0.01f;
+
+// Largest difference of any channel, in steps.
+int step(const ImageRgb8& a, const ImageRgb8& b, std::size_t pixel) {
+  int most = 0;
+  for (std::size_t c = 3 * pixel; c < 3 * pixel + 3; ++c) most = std::max(most, std::abs(int{a.rgb[c]} - int{b.rgb[c]}));
+  return most;
+}
+
+glm::vec3 colour(const ImageRgb8& image, int x, int y) {
+  const std::size_t at = 3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width_px) + static_cast<std::size_t>(x));
+  return {image.rgb[at], image.rgb[at + 1], image.rgb[at + 2]};
+}
+
+glm::vec3 bilinear(const ImageRgb8& image, glm::vec2 at_px) {
+  const int x = static_cast<int>(std::floor(at_px.x)), y = static_cast<int>(std::floor(at_px.y));
+  const glm::vec2 f = at_px - glm::vec2(x, y);
+  return glm::mix(glm::mix(colour(image, x, y), colour(image, x + 1, y), f.x),
+                  glm::mix(colour(image, x, y + 1), colour(image, x + 1, y + 1), f.x), f.y);
+}
+
+// Where an eye sees a point given relative to it, in pixel indices; empty outside the picture's inner part.
+std::optional<glm::vec2> project(const ViewConstants& view, glm::vec3 p, glm::ivec2 size_px) {
+  const float x = glm::dot(glm::vec3(view.world_from_eye_x), p), y = glm::dot(glm::vec3(view.world_from_eye_y), p);
+  const float depth = -glm::dot(glm::vec3(view.world_from_eye_z), p);
+  if (depth <= 0.0f) return std::nullopt;
+  const glm::vec2 lower(view.tan_angles.x, view.tan_angles.z), upper(view.tan_angles.y, view.tan_angles.w);
+  const glm::vec2 at = (glm::vec2(x, y) / depth - lower) / (upper - lower) * glm::vec2(size_px) - 0.5f;
+  if (at.x < 0.0f || at.y < 0.0f || at.x >= static_cast<float>(size_px.x - 1) || at.y >= static_cast<float>(size_px.y - 1)) {
+    return std::nullopt;
+  }
+  return at;
+}
+
+float largest(glm::vec3 v) { return std::max(std::abs(v.x), std::max(std::abs(v.y), std::abs(v.z))); }
+
+}  // namespace
+
+void add_change(const EyeFrame& before, const EyeFrame& now, MotionSums& sums) {
+  for (std::size_t i = 0; i < now.distance_m.size(); ++i) {
+    for (std::size_t c = 3 * i; c < 3 * i + 3; ++c) {
+      const int error = int{now.shown.rgb[c]} - int{now.expected.rgb[c]};
+      const int error_before = int{before.shown.rgb[c]} - int{before.expected.rgb[c]};
+      sums.flicker += std::abs(error - error_before) / (3.0 * 255.0);
+    }
+    const bool jumps = step(now.shown, before.shown, i) > step(now.expected, before.expected, i) + kNoticed;
+    const bool changed = now.counts[i].y != before.counts[i].y;
+    ++sums.pixels;
+    sums.probe_changes += changed;
+    sums.jumps += jumps;
+    sums.pops += jumps && changed;
+  }
+}
+
+void add_eyes(const EyeFrame& left, const EyeFrame& right, MotionSums& sums) {
+  const glm::ivec2 size_px(left.shown.width_px, left.shown.height_px);
+  const glm::vec3 between = (left.view.origin_hi_m - right.view.origin_hi_m) + (left.view.origin_lo_m - right.view.origin_lo_m);
+  for (int y = 0; y < size_px.y; ++y) {
+    for (int x = 0; x < size_px.x; ++x) {
+      const float t = left.distance_m[static_cast<std::size_t>(y * size_px.x + x)];
+      if (t > kMiss_m) continue;
+      const glm::vec3 from_right = between + view_ray(left.view, {x, y}, size_px) * t;
+      const auto at = project(right.view, from_right, size_px);
+      if (!at) continue;
+      // All four pixels around must be of the point's surroundings: edges are no disagreement.
+      bool seen = true;
+      for (int k = 0; k < 4; ++k) {
+        const int rx = static_cast<int>(at->x) + (k & 1), ry = static_cast<int>(at->y) + (k >> 1);
+        const float there = right.distance_m[static_cast<std::size_t>(ry * size_px.x + rx)];
+        seen = seen && std::abs(there - glm::length(from_right)) < kSamePoint * glm::length(from_right);
+      }
+      if (!seen) continue;
+      const float off = largest(bilinear(right.shown, *at) - colour(left.shown, x, y));
+      const float off_expected = largest(bilinear(right.expected, *at) - colour(left.expected, x, y));
+      ++sums.seen_twice;
+      sums.disagree += off > kNoticed;
+      sums.disagree_expected += off_expected > kNoticed;
+      sums.difference += static_cast<double>(off) / 255.0;
+      sums.difference_expected += static_cast<double>(off_expected) / 255.0;
+    }
+  }
+}
+
+}  // namespace probewalk::bench
