@@ -6,6 +6,7 @@
 #include <limits>
 #include <map>
 #include <mutex>
+#include <span>
 #include <stdexcept>
 #include <utility>
 
@@ -31,8 +32,6 @@ ResidentLevel make_level(const Device& device, const RoomUpload& room, bool stag
     ProbeRecord record = room.probes[i].record;
     record.geometry_address = address_words(level.blocks.addresses()[i].geometry);
     record.radiance_address = address_words(level.blocks.addresses()[i].radiance);
-    record.room = room.room;
-    record.level = room.level;
     level.records.push_back(record);
   }
   return level;
@@ -108,18 +107,54 @@ struct ProbeStore::Impl {
 
   // Finer levels come later in the map and win.
   void write_table(Slot& slot) {
-    if (slot.version == version) return;
+    if (slot.version == version && !is_fading) return;
     std::vector<ProbeRecord> table(probe_count);
-    shown.clear();
+    std::map<std::uint32_t, Key> finest, second;  // by room, of the levels that are ready
     for (const auto& [key, level] : levels) {
       if (!is_ready(key)) continue;
-      std::copy(level.records.begin(), level.records.end(), table.begin() + level.first_probe);
-      shown[key.first] = static_cast<int>(key.second);
+      if (const auto found = finest.find(key.first); found != finest.end()) second[key.first] = found->second;
+      finest[key.first] = key;
     }
+    is_fading = false;
+    std::map<std::uint32_t, int> now_shown;
+    for (const auto& [room, key] : finest) {
+      const ResidentLevel& level = levels.at(key);
+      std::copy(level.records.begin(), level.records.end(), table.begin() + level.first_probe);
+      now_shown[room] = static_cast<int>(key.second);
+      begin_fade(room, now_shown[room]);
+      const auto coarser = second.find(room);
+      if (coarser != second.end()) fade(room, levels.at(coarser->second), {&table[level.first_probe], level.records.size()});
+    }
+    shown = std::move(now_shown);
     std::memcpy(slot.table.mapped(), table.data(), table.size() * sizeof(ProbeRecord));
     slot.table.flush();
     slot.version = version;
     shown_version = version;
+  }
+
+  // A finer level than before shows from this frame on.
+  void begin_fade(std::uint32_t room, int level) {
+    const auto before = shown.find(room);
+    if (options.fade_frames > 0 && before != shown.end() && level > before->second) fade_start[room] = current_frame;
+  }
+
+  // Mixes the level that is replaced into the room's records, less with every frame.
+  void fade(std::uint32_t room, const ResidentLevel& coarse, std::span<ProbeRecord> records) {
+    const auto start = fade_start.find(room);
+    if (start == fade_start.end()) return;
+    const std::uint64_t age = current_frame - start->second + 1;
+    if (age > options.fade_frames || coarse.records.size() != records.size()) {
+      fade_start.erase(start);
+      ++version;  // the other slots' tables still hold the last step
+      return;
+    }
+    is_fading = true;
+    const auto share = static_cast<std::uint32_t>(65535 * (options.fade_frames + 1 - age) / (options.fade_frames + 1));
+    for (std::size_t i = 0; i < records.size(); ++i) {
+      records[i].coarse_radiance_address = coarse.records[i].radiance_address;
+      records[i].r_log2 = (records[i].r_log2 & 255u) | coarse.records[i].r_log2 << 8;
+      records[i].flags = (records[i].flags & 65535u) | share << 16;
+    }
   }
 
   bool is_ready(Key key) const { return std::find(copying.begin(), copying.end(), key) == copying.end(); }
@@ -138,6 +173,8 @@ struct ProbeStore::Impl {
   std::uint64_t version = 1;                           // of what the tables should hold
   std::uint64_t shown_version = 0;
   std::map<std::uint32_t, int> shown;
+  std::map<std::uint32_t, std::uint64_t> fade_start;   // by room: the frame that first showed its finer level
+  bool is_fading = false;                              // tables differ from frame to frame
   std::uint64_t bytes_uploaded = 0;
 };
 

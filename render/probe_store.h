@@ -20,6 +20,8 @@ struct ProbeStoreOptions {
   std::uint64_t upload_bytes_per_frame = 8u << 20;
   // Copy through the queue even where the CPU could write the device's memory.
   bool always_stage = false;
+  // Over so many frames the colours of a finer level take over from those of the level shown before; 0 = at once.
+  std::uint32_t fade_frames = 0;
 };
 
 // A room's probes at one level, as they lie on the device.

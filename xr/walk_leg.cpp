@@ -39,7 +39,7 @@ WalkLeg::WalkLeg(const WalkOptions& options, const Pack& pack, const Display& di
       watch_(watch),
       progress_(progress),
       settle_(options.settle.value_or(source_.kind() == "offscreen" && !books.left_ns)),
-      rooms_(pack, *display.device, {options.budget_bytes, options.loader_threads, options.report.has_value()}, progress),
+      rooms_(pack, *display.device, {options.budget_bytes, options.loader_threads, options.report.has_value(), !settle_}, progress),
       renderer_(*display.device, rooms_.store(),
                 {.tracer = {.extent_px = source_.view_extent(), .views = source_.view_count(), .samples = options.samples},
                  .target_format = source_.color_format(),

@@ -41,7 +41,7 @@ WalkRooms::WalkRooms(const Pack& pack, const Device& device, const WalkRoomsOpti
       options_(options),
       source_(pack.path()),
       store_(device, pack.manifest().grid, static_cast<std::uint32_t>(pack.manifest().probe_positions_m.size()),
-             ProbeStoreOptions{.frame_slots = kFrameSlots}),
+             ProbeStoreOptions{.frame_slots = kFrameSlots, .fade_frames = options.fade_levels ? kLevelFadeFrames : 0}),
       free_air_(pack.manifest().grid, pack.manifest().probe_positions_m.size()),
       streamer_(
           pack.manifest(), source_, [this](LoadedLevel&& loaded) { deliver(std::move(loaded)); },

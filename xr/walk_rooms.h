@@ -21,12 +21,14 @@ namespace probewalk {
 struct WalkRoomsOptions {
   std::uint64_t budget_bytes = kUnlimitedBudget;
   unsigned threads = 1;
-  bool keep_loads = false;  // for a report: facts() lists them
+  bool keep_loads = false;   // for a report: facts() lists them
+  bool fade_levels = false;  // a finer level takes over gradually
 };
 
 class WalkRooms {
  public:
   static constexpr double kFadeIn_s = 0.3;
+  static constexpr std::uint32_t kLevelFadeFrames = 15;  // a fifth of a second in a headset
 
   // `pack`, `device` and `progress` outlive this. Throws BadUsage when the budget is too small.
   WalkRooms(const Pack& pack, const Device& device, const WalkRoomsOptions& options, Progress& progress);

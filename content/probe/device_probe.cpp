@@ -206,7 +206,7 @@ DeviceProbe build_device_probe(const ProbeMap& map) {
   probe.record.l_min_m = top > 0.0f ? (1.0f - kRounding) / top : 1e15f;
   probe.record.n_log2 = static_cast<std::uint32_t>(log2_of(n));
   probe.record.r_log2 = radiance.r > 0 ? static_cast<std::uint32_t>(log2_of(radiance.r)) : 0;
-  probe.record.has_cuts = cut_cells != 0;
+  probe.record.flags = cut_cells != 0 ? 1u : 0u;
   return probe;
 }
 

@@ -13,7 +13,7 @@ namespace probewalk {
 struct DeviceProbe {
   std::vector<std::uint32_t> geometry;
   std::vector<std::uint32_t> radiance;
-  ProbeRecord record{};  // everything but the addresses, room and level
+  ProbeRecord record{};  // everything but the addresses
 };
 
 DeviceProbe build_device_probe(const ProbeMap& map);

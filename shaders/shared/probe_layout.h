@@ -46,10 +46,9 @@ struct ProbeRecord {
   pw_uint n_log2;         // 0 = not resident
   pw_uvec2 geometry_address;
   pw_uvec2 radiance_address;
-  pw_uint r_log2;
-  pw_uint room;
-  pw_uint level;
-  pw_uint has_cuts;
+  pw_uvec2 coarse_radiance_address;  // of the level that this one replaces, while coarse_share > 0
+  pw_uint r_log2;                    // bits 0..7; bits 8..15: that of the coarse radiance
+  pw_uint flags;                     // bit 0: has cuts; bits 16..31: coarse_share, in 1/65535 of the radiance
 };
 
 // The building's probe grid: vertex (x, y, z) at origin + spacing * (x, y, z) is served by probe table[(z dy + y) dx + x].

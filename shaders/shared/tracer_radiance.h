@@ -24,6 +24,8 @@ struct TexelSurface {
   pw_vec3 plane;  // as RayAnswer::plane
 };
 
+PW_FUNCTION int radiance_log2(ProbeRecord probe) { return int(probe.r_log2 & 255u); }
+
 PW_FUNCTION pw_vec3 decode_texel(pw_uint word) {
   float unit = pw_float_from_bits(((word >> 27) + 103u) << 23);  // 2^(exponent - 24)
   return pw_vec3(float(word & 511u), float((word >> 9) & 511u), float((word >> 18) & 511u)) * unit;
@@ -43,7 +45,7 @@ PW_FUNCTION int folded_texel(int i, int j, int r) {
 }
 
 PW_FUNCTION float texel_w_code(ProbeRecord probe, int texel) {
-  int codes = ((4 << (2 * int(probe.r_log2))) - 1) / 3;  // behind the whole mip chain
+  int codes = ((4 << (2 * radiance_log2(probe))) - 1) / 3;  // behind the whole mip chain
   return float((pw_word(probe.radiance_address, codes + (texel >> 1)) >> (16u * pw_uint(texel & 1))) & 65535u);
 }
 
@@ -55,7 +57,7 @@ PW_FUNCTION float texel_off(ProbeRecord probe, TexelSurface surface, int texel, 
   reads += 1u;
   float expected = surface.rule == PW_TEXELS_SKY ? 0.0f : surface.w_code;
   if (surface.rule == PW_TEXELS_PLANE) {
-    int r_log2 = int(probe.r_log2);
+    int r_log2 = radiance_log2(probe);
     float step = 2.0f / float(1 << r_log2);
     float u = (float(texel & ((1 << r_log2) - 1)) + 0.5f) * step - 1.0f;
     float v = (float(texel >> r_log2) + 0.5f) * step - 1.0f;
@@ -70,7 +72,7 @@ PW_FUNCTION float texel_off(ProbeRecord probe, TexelSurface surface, int texel, 
 // Bilinear look-up in one mip at uv in [-1, 1]^2. The surface is asked for in the finest mip only, where texels are small
 // enough to belong to one.
 PW_FUNCTION pw_vec3 sample_mip(ProbeRecord probe, int mip, pw_vec2 uv, TexelSurface surface, PW_INOUT(pw_uint) reads) {
-  int r_log2 = int(probe.r_log2);
+  int r_log2 = radiance_log2(probe);
   int r = 1 << (r_log2 - mip);
   int full = 1 << (2 * r_log2), rest = 1 << (2 * (r_log2 - mip));
   int base = 4 * (full - rest) / 3;
@@ -124,6 +126,24 @@ PW_FUNCTION pw_vec3 sample_mip(ProbeRecord probe, int mip, pw_vec2 uv, TexelSurf
          decode_texel(pw_word(probe.radiance_address, base + t11)) * weight.w;
 }
 
+// The stored radiance around uv, from the mip whose texels are as large as the ray's footprint there. q: L2 over L1 length
+// of the direction. footprint_rad: the ray's footprint at the surface as the probe sees it.
+PW_FUNCTION pw_vec3 filtered_radiance(ProbeRecord probe, pw_vec2 uv, float q, float footprint_rad, TexelSurface surface,
+                                      PW_INOUT(pw_uint) reads) {
+  int r_log2 = radiance_log2(probe);
+  // A texel spans du dv / |q|^3 of solid angle (du = 2 / r).
+  float texel_rad = 2.0f / float(1 << r_log2) / (q * sqrt(q));
+  float mip = min(max(log2(max(footprint_rad / texel_rad, 1e-6f)), 0.0f), float(r_log2));
+  int finer = int(mip);
+  float blend = mip - float(finer);
+  pw_vec3 radiance = sample_mip(probe, finer, uv, surface, reads);
+  if (blend > 0.0f && finer < r_log2) {
+    surface.rule = PW_TEXELS_ANY;
+    radiance = radiance * (1.0f - blend) + sample_mip(probe, finer + 1, uv, surface, reads) * blend;
+  }
+  return radiance;
+}
+
 // Radiance in cd/m^2 that comes back along the ray. pixel_angle: angular width of the ray's pixel; the mip is chosen from
 // the pixel's footprint at the hit over the texel's. reads: texels and codes fetched.
 PW_FUNCTION pw_vec3 ray_radiance(GridConstants grid, TraceConstants dials, RayAnswer answer, real3 origin_hi,
@@ -141,22 +161,21 @@ PW_FUNCTION pw_vec3 ray_radiance(GridConstants grid, TraceConstants dials, RayAn
   }
   float len2 = float(sqrt(x.x * x.x + x.y * x.y + x.z * x.z));
   float q = len2 / len1;
-  // A texel spans du dv / |q|^3 of solid angle (du = 2 / r).
-  float texel_angle = 2.0f / float(1 << int(probe.r_log2)) / (q * sqrt(q));
-  float ratio = far ? pixel_angle / texel_angle : pixel_angle * float(answer.t) / (texel_angle * len2);
-  float mip = min(max(log2(max(ratio, 1e-6f)), 0.0f), float(probe.r_log2));
-  int finer = int(mip);
-  float blend = mip - float(finer);
+  float footprint_rad = far ? pixel_angle : pixel_angle * float(answer.t) / len2;
   TexelSurface surface;
   surface.plane = pw_vec3(answer.plane);
   bool on_plane = answer.plane.x != real(0) || answer.plane.y != real(0) || answer.plane.z != real(0);
   surface.rule = answer.environment ? PW_TEXELS_ANY : far ? PW_TEXELS_SKY : on_plane ? PW_TEXELS_PLANE : PW_TEXELS_POINT;
   surface.w_code = w_code_of(1.0f / len1);
   pw_vec2 uv = pw_vec2(octahedral_uv(x));
-  pw_vec3 radiance = sample_mip(probe, finer, uv, surface, reads);
-  if (blend > 0.0f && finer < int(probe.r_log2)) {
-    surface.rule = PW_TEXELS_ANY;
-    radiance = radiance * (1.0f - blend) + sample_mip(probe, finer + 1, uv, surface, reads) * blend;
+  pw_vec3 radiance = filtered_radiance(probe, uv, q, footprint_rad, surface, reads);
+  float coarse_share = float(probe.flags >> 16) * (1.0f / 65535.0f);
+  if (coarse_share > 0.0f) {
+    // A finer level has just arrived: what it replaces fades out.
+    ProbeRecord coarse = probe;
+    coarse.radiance_address = probe.coarse_radiance_address;
+    coarse.r_log2 = probe.r_log2 >> 8;
+    radiance = radiance * (1.0f - coarse_share) + filtered_radiance(coarse, uv, q, footprint_rad, surface, reads) * coarse_share;
   }
   return radiance / dials.radiance_scale;
 }

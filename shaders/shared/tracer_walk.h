@@ -287,7 +287,7 @@ PW_FUNCTION bool walk_segment(ProbeRecord probe, OctantSegment s, real t_start, 
       int record = -1;
       bool above = maximum <= real(0) || w_low > maximum * real(kCutExtension);
       if (!above) {
-        if (probe.has_cuts != 0u) {
+        if ((probe.flags & 1u) != 0u) {
           int gx = s.side.x > 0 ? half_n + ix : half_n - 1 - ix;
           int gy = s.side.y > 0 ? half_n + iy : half_n - 1 - iy;
           int cell = gy * n + gx;

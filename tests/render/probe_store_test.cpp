@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <thread>
 
 #include "gpu_test.h"
@@ -69,6 +70,48 @@ TEST_F(ProbeStoreTest, AnswersUnknownWithoutProbesAndHitsWithThem) {
   store.evict(0, 0);
   store.settle();
   EXPECT_EQ(ask(store).probe, -1);
+}
+
+TEST_F(ProbeStoreTest, FadesFromTheCoarseLevelToTheFineOne) {
+  ProbeStore store(device, room.grid, room.probe_count(), {.fade_frames = 6});
+  RoomUpload dark = room.upload(0);
+  for (DeviceProbe& probe : dark.probes) {
+    const std::size_t texels = probe.radiance.size() - (std::size_t{1} << (2 * probe.record.r_log2)) / 2;
+    std::fill_n(probe.radiance.begin(), texels, 0u);
+  }
+  store.upload(dark);
+  frame(store);
+  frame(store);
+  EXPECT_EQ(ask(store).radiance, glm::vec3(0)) << "the first level has nothing to fade from";
+  store.upload(room.upload(1));
+  std::vector<float> seen;
+  for (int k = 0; k < 5; ++k) {
+    frame(store);
+    frame(store);  // of the slot that is asked
+    seen.push_back(ask(store).radiance.x);
+  }
+  EXPECT_GT(seen.front(), 0.0f);
+  EXPECT_LT(seen.front(), 0.5f * seen.back());
+  EXPECT_TRUE(std::is_sorted(seen.begin(), seen.end()));
+  EXPECT_EQ(seen[3], seen[4]) << "the fade has an end";
+  ProbeStore at_once(device, room.grid, room.probe_count());
+  at_once.upload(room.upload(1));
+  at_once.settle();
+  EXPECT_EQ(seen.back(), ask(at_once).radiance.x);
+}
+
+TEST_F(ProbeStoreTest, AFadeOutlivesTheEvictionOfWhatItFadesFrom) {
+  ProbeStore store(device, room.grid, room.probe_count(), {.fade_frames = 6});
+  store.upload(room.upload(0));
+  frame(store);
+  store.upload(room.upload(1));
+  frame(store);
+  store.evict(0, 0);
+  frame(store);
+  frame(store);
+  EXPECT_EQ(store.level_shown(0), 1);
+  EXPECT_EQ(store.device_bytes(), ProbeStore::bytes_of(room.probes));
+  EXPECT_EQ(ask(store).answer, kClassHit);
 }
 
 TEST_F(ProbeStoreTest, FreesMemoryOnlyWhenNoFrameReadsIt) {
