@@ -69,7 +69,7 @@ void add_bake_command(CLI::App& app, CommonOptions& common) {
       "States the unit and the lights it assumes, estimates time and size, then shows progress. Interrupted (Ctrl-C), it\n"
       "keeps what is finished beside the pack; the same command goes on from there. The same scene and options give the\n"
       "same bytes, whatever the number of threads. NAME.plan.png beside the pack shows floors, rooms,\n"
-      "probes and the tour from above.\n\n"
+      "probes and the tour from above. README.md lists the glTF extensions that are read.\n\n"
       "  probewalk bake house.glb -o house.probes\n"
       "  probewalk bake flat.gltf -o flat.probes --scale 0.01 --max-probes 60    a scene in centimetres, small pack");
   auto arguments = std::make_shared<BakeArguments>();

@@ -225,7 +225,8 @@ const DracoMesh& DracoMeshes::mesh(int view) {
   auto known = decoded_.find(view);
   if (known == decoded_.end()) known = decoded_.emplace(view, decode(view)).first;
   if (!known->second.problem.empty()) {
-    throw BadInput(fmt::format("{}: the Draco stream in bufferView {} {}", document_.file, view, known->second.problem));
+    throw BadInput(
+        fmt::format("{}: the Draco stream in bufferView {} {}", document_.file, view, known->second.problem));
   }
   return known->second.mesh;
 }

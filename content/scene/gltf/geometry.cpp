@@ -54,7 +54,8 @@ class GeometryImporter {
     const int mesh = document_.model.nodes[node.node].mesh;
     if (mesh < 0) return;
     if (static_cast<std::size_t>(mesh) >= document_.model.meshes.size()) {
-      throw BadInput(fmt::format("{}: node {} refers to mesh {}, which does not exist", document_.file, node.node, mesh));
+      throw BadInput(
+          fmt::format("{}: node {} refers to mesh {}, which does not exist", document_.file, node.node, mesh));
     }
     std::vector<glm::dmat4> placements = instance_matrices(document_, node.node, accessors_);
     for (glm::dmat4& placement : placements) placement = node.world_from_node * placement;
@@ -64,7 +65,8 @@ class GeometryImporter {
     }
     const tinygltf::Mesh& description = document_.model.meshes[mesh];
     for (std::size_t k = 0; k < description.primitives.size(); ++k) {
-      const std::string where = fmt::format("{}: mesh {} '{}', primitive {}", document_.file, mesh, description.name, k);
+      const std::string where =
+          fmt::format("{}: mesh {} '{}', primitive {}", document_.file, mesh, description.name, k);
       add_primitive(where, description.primitives[k], node.node, placements);
     }
   }

@@ -14,7 +14,8 @@ struct NodeInstance {
 };
 
 // All nodes of the default scene (else the first, else all roots), parents before children, in document order.
-// Throws BadInput when nodes form a loop, share a child, refer to what does not exist, or lie deeper than kMaxNodeDepth.
+// Throws BadInput when nodes form a loop, share a child, refer to what does not exist, or lie deeper than
+// kMaxNodeDepth.
 std::vector<NodeInstance> flatten_nodes(const Document& document);
 
 // The JSON of the scene that flatten_nodes walks, or nullptr.

@@ -118,7 +118,8 @@ std::vector<std::uint32_t> PrimitiveReader::corners(const std::string& where, co
   }
   for (const std::uint32_t corner : corners) {
     if (corner >= vertex_count) {
-      throw BadInput(fmt::format("{}: an index refers to vertex {} of {}; export it again", where, corner, vertex_count));
+      throw BadInput(
+          fmt::format("{}: an index refers to vertex {} of {}; export it again", where, corner, vertex_count));
     }
   }
   return triangle_list(primitive.mode, std::move(corners));
@@ -134,7 +135,8 @@ PrimitiveData PrimitiveReader::read(const std::string& where, const tinygltf::Pr
     std::vector<float> values = floats(where, primitive, mesh, name, components);
     const std::size_t count = values.size() / static_cast<std::size_t>(components);
     if (attribute(primitive, name) >= 0 && count != vertices.count()) {
-      throw BadInput(fmt::format("{}: {} positions but {} of {}; export it again", where, vertices.count(), count, name));
+      throw BadInput(
+          fmt::format("{}: {} positions but {} of {}; export it again", where, vertices.count(), count, name));
     }
     return values;
   };

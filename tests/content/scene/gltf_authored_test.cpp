@@ -224,6 +224,32 @@ TEST(Authored, CreditsComeFromTheAssetOrAFile) {
   SceneLoadOptions options;
   options.credits_file = GltfScene::write("credits.txt", "Floor by Anna\n");
   EXPECT_EQ(small.load(options).credits, "Floor by Anna");
+  EXPECT_NE(small.load(options).content_hash, small.load().content_hash);
+}
+
+TEST(Authored, CreditsOfAnyShapeAreText) {
+  GltfScene small = GltfScene::floor();
+  small.json["asset"]["extras"] = "Floor by Anna";
+  EXPECT_EQ(small.load().credits, "Floor by Anna");
+  for (const Json& extras : {Json(7), Json::array({"a"}), Json{{"author", {{"name", "Anna"}}}}, Json(nullptr)}) {
+    small.json["asset"]["extras"] = extras;
+    EXPECT_EQ(small.load().credits, "") << extras;
+  }
+  small.json["asset"]["copyright"] = 3;
+  EXPECT_EQ(small.load().credits, "");
+}
+
+TEST(Authored, LongCreditsAreCutBetweenCharacters) {
+  GltfScene small = GltfScene::floor();
+  std::string many;
+  for (int i = 0; i < 50000; ++i) many += "\xc3\xa9";
+  small.json["asset"]["copyright"] = many;
+  const std::string credits = small.load().credits;
+  EXPECT_EQ(credits.size(), 65535u) << "64 KiB without the half character that would fit before the dots";
+  EXPECT_TRUE(credits.ends_with("\xc3\xa9..."));
+  SceneLoadOptions options;
+  options.credits_file = GltfScene::write("credits.txt", std::string(70000, 'x'));
+  EXPECT_THROW(small.load(options), BadInput) << "a file that someone names is refused, not cut";
 }
 
 }  // namespace
