@@ -18,7 +18,8 @@ struct DepthRange {
 inline DepthRange depth_range_of(const Bounds& bounds) {
   constexpr double kLeastFar_m = 10.0, kMostFar_m = 1e6;  // of a thing on a table, of a landscape
   DepthRange range;
-  range.far_m = static_cast<float>(glm::clamp(2.0 * glm::distance(bounds.lower_m, bounds.upper_m), kLeastFar_m, kMostFar_m));
+  const double diagonal_m = glm::distance(bounds.lower_m, bounds.upper_m);
+  range.far_m = static_cast<float>(glm::clamp(2.0 * diagonal_m, kLeastFar_m, kMostFar_m));
   return range;
 }
 

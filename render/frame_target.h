@@ -17,8 +17,8 @@ struct FrameTarget {
   VkImageLayout final_layout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
   VkSemaphore wait_before = VK_NULL_HANDLE;   // image available (window), or none
   VkSemaphore signal_after = VK_NULL_HANDLE;  // rendering done (window), or none
-  // Depth attachment of the same size and layers (view_depth.h says what is written), in any layout when handed out, left
-  // in VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL; or none.
+  // Depth attachment of the same size and layers (view_depth.h says what is written), in any layout when handed out,
+  // left in VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL; or none.
   VkImage depth_image = VK_NULL_HANDLE;
   VkFormat depth_format = VK_FORMAT_UNDEFINED;  // D32_SFLOAT or D16_UNORM
 };

@@ -1,5 +1,5 @@
-// Frames to and from a headset: an OpenXR session with one stereo projection layer, and its depth where the runtime takes
-// it.
+// Frames to and from a headset: an OpenXR session with one stereo projection layer, and its depth where the runtime
+// takes it.
 #pragma once
 
 #include <deque>

@@ -103,8 +103,8 @@ void RoomStreamer::arrive(LoadResult& result) {
 std::string RoomStreamer::describe_refused(const LoadResult& result) const {
   const RoomEntry& room = manifest_.rooms[result.key.room];
   const std::uint64_t budget_bytes = options_.residency.budget_bytes;
-  return fmt::format("room {}, level {}: takes {} bytes on the device where the pack states {}{}", room.id, result.key.level,
-                     result.bytes_device, room.levels[result.key.level].bytes_device,
+  return fmt::format("room {}, level {}: takes {} bytes on the device where the pack states {}{}", room.id,
+                     result.key.level, result.bytes_device, room.levels[result.key.level].bytes_device,
                      result.bytes_device > budget_bytes
                          ? fmt::format(", more than the budget of {}: it is left out", budget_bytes)
                          : "; it is loaded anew where the budget has space for it");

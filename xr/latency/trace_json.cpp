@@ -35,8 +35,9 @@ class TraceWriter {
   void span(unsigned track, const std::string& name, const Interval& interval, const std::string& args) {
     if (interval.begin == 0 || interval.end < interval.begin) return;
     begin_event();
-    fmt::format_to(out_, R"({{"name":{},"ph":"X","pid":1,"tid":{},"ts":{:.3f},"dur":{:.3f},"args":{}}})", quoted(name), track,
-                   microseconds(interval.begin - origin_ns_), microseconds(interval.end - interval.begin), args);
+    fmt::format_to(out_, R"({{"name":{},"ph":"X","pid":1,"tid":{},"ts":{:.3f},"dur":{:.3f},"args":{}}})",
+                   quoted(name), track, microseconds(interval.begin - origin_ns_),
+                   microseconds(interval.end - interval.begin), args);
   }
 
   void mark(const std::string& name, std::int64_t at_ns) {
