@@ -33,12 +33,14 @@ bool on_surface(const EyeFrame& eye, std::size_t pixel) {
 // Largest difference of any channel, in steps.
 int step(const ImageRgb8& a, const ImageRgb8& b, std::size_t pixel) {
   int most = 0;
-  for (std::size_t c = 3 * pixel; c < 3 * pixel + 3; ++c) most = std::max(most, std::abs(int{a.rgb[c]} - int{b.rgb[c]}));
+  for (std::size_t c = 3 * pixel; c < 3 * pixel + 3; ++c) {
+    most = std::max(most, std::abs(int{a.rgb[c]} - int{b.rgb[c]}));
+  }
   return most;
 }
 
 glm::vec3 colour(const ImageRgb8& image, int x, int y) {
-  const std::size_t at = 3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width_px) + static_cast<std::size_t>(x));
+  const std::size_t at = 3 * static_cast<std::size_t>(y * image.width_px + x);
   return {image.rgb[at], image.rgb[at + 1], image.rgb[at + 2]};
 }
 
@@ -56,10 +58,9 @@ std::optional<glm::vec2> project(const ViewConstants& view, glm::vec3 p, glm::iv
   if (depth <= 0.0f) return std::nullopt;
   const glm::vec2 lower(view.tan_angles.x, view.tan_angles.z), upper(view.tan_angles.y, view.tan_angles.w);
   const glm::vec2 at = (glm::vec2(x, y) / depth - lower) / (upper - lower) * glm::vec2(size_px) - 0.5f;
-  if (at.x < 0.0f || at.y < 0.0f || at.x >= static_cast<float>(size_px.x - 1) || at.y >= static_cast<float>(size_px.y - 1)) {
-    return std::nullopt;
-  }
-  return at;
+  const glm::vec2 last(size_px - 1);
+  const bool inside = at.x >= 0.0f && at.y >= 0.0f && at.x < last.x && at.y < last.y;
+  return inside ? std::optional(at) : std::nullopt;
 }
 
 float largest(glm::vec3 v) { return std::max(std::abs(v.x), std::max(std::abs(v.y), std::abs(v.z))); }
@@ -94,7 +95,8 @@ void add_change(const EyeFrame& before, const EyeFrame& now, MotionSums& sums) {
 
 void add_pair(const EyeFrame& first, const EyeFrame& second, PairSums& sums) {
   const glm::ivec2 size_px(first.shown.width_px, first.shown.height_px);
-  const glm::vec3 between = (first.view.origin_hi_m - second.view.origin_hi_m) + (first.view.origin_lo_m - second.view.origin_lo_m);
+  const ViewConstants &a = first.view, &b = second.view;
+  const glm::vec3 between = (a.origin_hi_m - b.origin_hi_m) + (a.origin_lo_m - b.origin_lo_m);
   for (int y = 0; y < size_px.y; ++y) {
     for (int x = 0; x < size_px.x; ++x) {
       const float t = first.distance_m[static_cast<std::size_t>(y * size_px.x + x)];

@@ -1,6 +1,6 @@
-// How still the picture holds along a slow way of the head: draws a pack in stereo frame by frame, compares with the same
-// pictures from the triangles, and prints a table; DIR/motion.json holds it, too. The triangles' pictures are kept in
-// DIR and used again.
+// How still the picture holds along a slow way of the head: draws a pack in stereo frame by frame, compares with the
+// same pictures from the triangles, and prints a table; DIR/motion.json holds it, too. The triangles' pictures are kept
+// in DIR and used again: a DIR is for one way through one pack.
 //   picture_motion PACK SCENE DIR FROM TO [FRAMES [WIDTHxHEIGHT [SAMPLES]]]      FROM, TO: x,y,z,yaw,pitch
 #include <fmt/format.h>
 
@@ -85,7 +85,9 @@ std::vector<ImageRgb8> expected_pictures(const Arguments& a, const Manifest& man
   std::error_code none;
   if (fs::file_size(file, none) == pictures.size() * empty.rgb.size()) {
     std::ifstream in(file, std::ios::binary);
-    for (ImageRgb8& picture : pictures) in.read(reinterpret_cast<char*>(picture.rgb.data()), static_cast<std::streamsize>(picture.rgb.size()));
+    for (ImageRgb8& picture : pictures) {
+      in.read(reinterpret_cast<char*>(picture.rgb.data()), static_cast<std::streamsize>(picture.rgb.size()));
+    }
     return pictures;
   }
   const ReferenceCaster caster(a.scene, manifest, std::nullopt, 0, progress);
@@ -157,7 +159,8 @@ nlohmann::json measure(const Arguments& a) {
       add_pair(now[eye], before[eye], in_time);
     }
     add_pair(now[0], now[1], eyes);
-    worst_pops = std::max(worst_pops, share(sums.surface_pops - pops_before, std::size_t{2} * a.extent.width * a.extent.height));
+    const std::size_t frame_pixels = std::size_t{2} * a.extent.width * a.extent.height;
+    worst_pops = std::max(worst_pops, share(sums.surface_pops - pops_before, frame_pixels));
     pops_before = sums.surface_pops;
     if (frame % kFlipEvery == 0) {
       const ImageRgb8 shown = side_by_side({now[0].shown, now[1].shown});
