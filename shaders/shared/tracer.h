@@ -68,6 +68,12 @@ PW_FUNCTION int start_test(ProbeRecord probe, real3 x, real margin, PW_INOUT(pw_
   return surface <= real(0) || w > surface * (real(1) - margin) ? 1 : 0;
 }
 
+// A corner's score falls from half a cell away on, so that one that the next cell has not got is not the first choice at
+// the border: else a step across it swaps the probes of many rays at once, and the picture jumps. In units of score a
+// cell; above 2 no direction makes up for it.
+#define PW_FADE_FROM real(0.5)
+#define PW_FADE_PER_CELL real(8)
+
 struct CandidateList {
   int count;
   int probe[PW_CANDIDATES];
@@ -75,7 +81,8 @@ struct CandidateList {
 };
 
 // The probes at the corners of the grid cell that holds q (clamped to the grid), by falling score: how well the ray runs
-// away from the probe, less its distance. Probes that are not resident are left out.
+// away from the probe, less its distance, less how far beyond the cell's middle its corner lies. Probes that are not
+// resident are left out.
 PW_FUNCTION CandidateList cell_candidates(GridConstants grid, TraceConstants dials, real3 q, real3 d) {
   CandidateList list;
   list.count = 0;
@@ -83,6 +90,8 @@ PW_FUNCTION CandidateList cell_candidates(GridConstants grid, TraceConstants dia
   int cx = min(max(int(floor(min(max(cell.x, real(-1)), real(65536)))), 0), max(0, grid.dims.x - 2));
   int cy = min(max(int(floor(min(max(cell.y, real(-1)), real(65536)))), 0), max(0, grid.dims.y - 2));
   int cz = min(max(int(floor(min(max(cell.z, real(-1)), real(65536)))), 0), max(0, grid.dims.z - 2));
+  real3 part = real3(min(max(cell.x - real(cx), real(0)), real(1)), min(max(cell.y - real(cy), real(0)), real(1)),
+                     min(max(cell.z - real(cz), real(0)), real(1)));
   for (int corner = 0; corner < PW_CANDIDATES; ++corner) {
     int x = min(cx + (corner & 1), grid.dims.x - 1);
     int y = min(cy + ((corner >> 1) & 1), grid.dims.y - 1);
@@ -97,6 +106,10 @@ PW_FUNCTION CandidateList cell_candidates(GridConstants grid, TraceConstants dia
     real distance = sqrt(away.x * away.x + away.y * away.y + away.z * away.z) + real(1e-6);
     real cosine = (away.x * d.x + away.y * d.y + away.z * d.z) / distance;
     real score = cosine - real(dials.distance_weight) * distance * real(grid.inverse_diagonal);
+    real off_x = (corner & 1) != 0 ? real(1) - part.x : part.x, off_y = (corner & 2) != 0 ? real(1) - part.y : part.y;
+    real off_z = (corner & 4) != 0 ? real(1) - part.z : part.z;
+    real off = max(off_x, max(off_y, off_z));
+    score = score - max(off - PW_FADE_FROM, real(0)) * PW_FADE_PER_CELL;
     int at = list.count;
     for (; at > 0 && list.score[at - 1] < score; --at) {
       list.score[at] = list.score[at - 1];

@@ -26,7 +26,16 @@ struct MotionSums {
   std::size_t probe_changes = 0;      // pixels whose answering probe changed
   std::size_t pops = 0;               // of these: shown jumps by kNoticed more than the triangles do
   std::size_t jumps = 0;              // the same of all pixels
-  std::size_t seen_twice = 0;         // left pixels whose surface point the right eye sees
+  // Pixels that show a surface now and showed it before: away from outlines, where pictures of any kind jump.
+  std::size_t surface_pixels = 0;
+  std::size_t surface_pops = 0;  // probe changed and jumps
+  std::size_t surface_jumps = 0;
+  double surface_flicker = 0.0;
+};
+
+// Surface points that two pictures show: of the two eyes, or of one eye in two frames.
+struct PairSums {
+  std::size_t seen_twice = 0;         // pixels of the first whose surface point the second sees
   std::size_t disagree = 0;           // of these: shown in noticeably different colours
   std::size_t disagree_expected = 0;  // the same of the triangles' pictures: what sampling alone makes
   double difference = 0.0, difference_expected = 0.0;  // sums of the largest channel's difference, in parts of white
@@ -34,7 +43,6 @@ struct MotionSums {
 
 // One eye from one frame to the next.
 void add_change(const EyeFrame& before, const EyeFrame& now, MotionSums& sums);
-// Both eyes of one frame.
-void add_eyes(const EyeFrame& left, const EyeFrame& right, MotionSums& sums);
+void add_pair(const EyeFrame& first, const EyeFrame& second, PairSums& sums);
 
 }  // namespace probewalk::bench

@@ -1,6 +1,6 @@
-// How still the picture holds along a slow way of the head: draws a pack in stereo frame by frame, compares with the same
-// pictures from the triangles, and prints a table; DIR/motion.json holds it, too. The triangles' pictures are kept in
-// DIR and used again.
+// How still the picture holds along a slow way of the head: draws a pack in stereo frame by frame, compares with the
+// same pictures from the triangles, and prints a table; DIR/motion.json holds it, too. The triangles' pictures are kept
+// in DIR and used again: a DIR is for one way through one pack.
 //   picture_motion PACK SCENE DIR FROM TO [FRAMES [WIDTHxHEIGHT [SAMPLES]]]      FROM, TO: x,y,z,yaw,pitch
 #include <fmt/format.h>
 
@@ -85,7 +85,9 @@ std::vector<ImageRgb8> expected_pictures(const Arguments& a, const Manifest& man
   std::error_code none;
   if (fs::file_size(file, none) == pictures.size() * empty.rgb.size()) {
     std::ifstream in(file, std::ios::binary);
-    for (ImageRgb8& picture : pictures) in.read(reinterpret_cast<char*>(picture.rgb.data()), static_cast<std::streamsize>(picture.rgb.size()));
+    for (ImageRgb8& picture : pictures) {
+      in.read(reinterpret_cast<char*>(picture.rgb.data()), static_cast<std::streamsize>(picture.rgb.size()));
+    }
     return pictures;
   }
   const ReferenceCaster caster(a.scene, manifest, std::nullopt, 0, progress);
@@ -108,6 +110,16 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
+double share(std::size_t part, std::size_t of) { return static_cast<double>(part) / static_cast<double>(of); }
+
+void add_pair_rows(nlohmann::json& table, const std::string& name, const PairSums& sums) {
+  const auto twice = static_cast<double>(sums.seen_twice);
+  table[name + "_disagree_fraction"] = share(sums.disagree, sums.seen_twice);
+  table[name + "_disagree_fraction_triangles"] = share(sums.disagree_expected, sums.seen_twice);
+  table[name + "_difference"] = sums.difference / twice;
+  table[name + "_difference_triangles"] = sums.difference_expected / twice;
+}
+
 nlohmann::json measure(const Arguments& a) {
   SilentProgress progress;
   fs::create_directories(a.dir);
@@ -121,10 +133,13 @@ nlohmann::json measure(const Arguments& a) {
   settings.trace = default_dials(manifest.radiance_scale);
   settings.exposure = exposure_from_ev(static_cast<float>(manifest.exposure_ev));
   MotionSums sums;
+  PairSums eyes, in_time;
   std::vector<EyeFrame> before;
   std::vector<double> trace_ms;
   double lookups = 0.0, reads = 0.0, rays = 0.0, flip = 0.0, psnr = 0.0;
   int flips = 0;
+  std::size_t pops_before = 0;
+  double worst_pops = 0.0;
   for (int frame = 0; frame < a.frames; ++frame) {
     const Pose pose = between(a.from, a.to, frame / (a.frames - 1.0));
     const auto views = eyes_at(pose, a.extent);
@@ -139,9 +154,14 @@ nlohmann::json measure(const Arguments& a) {
         rays += c.w >> 8 & 255u;
         reads += c.w >> 16;
       }
-      if (!before.empty()) add_change(before[eye], now[eye], sums);
+      if (before.empty()) continue;
+      add_change(before[eye], now[eye], sums);
+      add_pair(now[eye], before[eye], in_time);
     }
-    add_eyes(now[0], now[1], sums);
+    add_pair(now[0], now[1], eyes);
+    const std::size_t frame_pixels = std::size_t{2} * a.extent.width * a.extent.height;
+    worst_pops = std::max(worst_pops, share(sums.surface_pops - pops_before, frame_pixels));
+    pops_before = sums.surface_pops;
     if (frame % kFlipEvery == 0) {
       const ImageRgb8 shown = side_by_side({now[0].shown, now[1].shown});
       const ImageRgb8 wanted = side_by_side({now[0].expected, now[1].expected});
@@ -153,9 +173,7 @@ nlohmann::json measure(const Arguments& a) {
     before = std::move(now);
   }
   const double all = 2.0 * a.extent.width * a.extent.height * a.frames;
-  const auto share = [](std::size_t part, std::size_t of) { return static_cast<double>(part) / static_cast<double>(of); };
-  const auto twice = static_cast<double>(sums.seen_twice);
-  return {{"frames", a.frames},
+  nlohmann::json table{{"frames", a.frames},
           {"samples", a.samples},
           {"flip_mean", flip / flips},
           {"psnr_db", psnr / flips},
@@ -163,16 +181,19 @@ nlohmann::json measure(const Arguments& a) {
           {"probe_change_fraction", share(sums.probe_changes, sums.pixels)},
           {"pop_fraction", share(sums.pops, sums.pixels)},
           {"jump_fraction", share(sums.jumps, sums.pixels)},
-          {"seen_twice_fraction", 2.0 * twice / all},
-          {"disagree_fraction", share(sums.disagree, sums.seen_twice)},
-          {"disagree_fraction_triangles", share(sums.disagree_expected, sums.seen_twice)},
-          {"eye_difference", sums.difference / twice},
-          {"eye_difference_triangles", sums.difference_expected / twice},
+          {"surface_fraction", share(sums.surface_pixels, sums.pixels)},
+          {"surface_flicker", sums.surface_flicker / static_cast<double>(sums.surface_pixels)},
+          {"surface_pop_fraction", share(sums.surface_pops, sums.surface_pixels)},
+          {"surface_pop_fraction_worst_frame", worst_pops},
+          {"surface_jump_fraction", share(sums.surface_jumps, sums.surface_pixels)},
           {"lookups_mean", lookups / all},
           {"attribute_reads_mean", reads / all},
           {"rays_mean", rays / all},
           {"trace_ms_median", median(trace_ms)},
           {"trace_ms_min", *std::min_element(trace_ms.begin(), trace_ms.end())}};
+  add_pair_rows(table, "eyes", eyes);
+  add_pair_rows(table, "frames", in_time);
+  return table;
 }
 
 }  // namespace
@@ -182,7 +203,7 @@ int main(int argc, char** argv) {
   try {
     const probewalk::bench::Arguments arguments = probewalk::bench::parse(argc, argv);
     const nlohmann::json table = probewalk::bench::measure(arguments);
-    for (const auto& [name, value] : table.items()) fmt::print("{:<28} {:>12.6g}\n", name, value.get<double>());
+    for (const auto& [name, value] : table.items()) fmt::print("{:<36} {:>12.6g}\n", name, value.get<double>());
     std::ofstream(arguments.dir / "motion.json") << table.dump(2) << "\n";
   } catch (const std::exception& error) {
     fmt::print(stderr, "{}\n", error.what());
