@@ -11,6 +11,7 @@
 
 #include "content/bake/patterns.h"
 #include "content/bake/surface_point.h"
+#include "content/error.h"
 
 namespace probewalk {
 namespace {
@@ -68,7 +69,8 @@ bool is_hidden(const RayScene& rays, glm::vec3 position_m, glm::vec3 normal) {
 
 }  // namespace
 
-CachePoints::CachePoints(const Scene& scene, const RayScene& rays, double spacing_m, std::size_t max_points) {
+CachePoints::CachePoints(const Scene& scene, const RayScene& rays, double spacing_m, std::size_t max_points,
+                         Progress& progress) {
   // Poisson disks put down about 0.7 pairs of points a square of the spacing.
   double area_m2 = 0.0;
   for (const glm::uvec3& t : scene.triangles) {
@@ -76,13 +78,14 @@ CachePoints::CachePoints(const Scene& scene, const RayScene& rays, double spacin
     area_m2 += 0.5 * glm::length(glm::cross(b - a, c - a));
   }
   spacing_m = std::max(spacing_m, std::sqrt(1.2 * area_m2 / static_cast<double>(max_points)));
-  for (spacing_m_ = static_cast<float>(spacing_m); !scatter(scene, rays, max_points);) spacing_m_ *= 1.2f;
-  look_around(rays);
+  for (spacing_m_ = static_cast<float>(spacing_m); !scatter(scene, rays, max_points, progress);) spacing_m_ *= 1.2f;
+  look_around(rays, progress);
   build_index();
 }
 
 // Dart throwing over fixed candidates; false when there are too many.
-bool CachePoints::scatter(const Scene& scene, const RayScene& rays, std::size_t max_points) {
+bool CachePoints::scatter(const Scene& scene, const RayScene& rays, std::size_t max_points, Progress& progress) {
+  progress.begin("light cache points", scene.triangles.size(), "triangles");
   reach_m_ = spacing_m_ * kReachPerSpacing;
   points_.clear();
   std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> taken;
@@ -104,6 +107,7 @@ bool CachePoints::scatter(const Scene& scene, const RayScene& rays, std::size_t 
     return true;
   };
   for (std::uint32_t t = 0; t < scene.triangles.size(); ++t) {
+    progress.advance(1);
     const glm::uvec3 index = scene.triangles[t];
     const glm::vec3 a = scene.positions_m[index.x], b = scene.positions_m[index.y], c = scene.positions_m[index.z];
     const glm::vec3 cross = glm::cross(b - a, c - a);
@@ -117,6 +121,7 @@ bool CachePoints::scatter(const Scene& scene, const RayScene& rays, std::size_t 
     const float wanted = std::max(squares * kCandidatesPerSquare, lengths * kCandidatesPerLength);
     const auto candidates = 1u + static_cast<std::uint32_t>(std::min(wanted, 1e6f));
     for (std::uint32_t k = 0; k < candidates; ++k) {
+      if (k % 256 == 0 && progress.cancelled()) throw Interrupted("interrupted while lighting; nothing of it is kept");
       const glm::vec2 square = r2_sequence(k);
       const float root = std::sqrt(square.x);
       hit.barycentric = {root * (1.0f - square.y), root * square.y};
@@ -133,8 +138,9 @@ bool CachePoints::scatter(const Scene& scene, const RayScene& rays, std::size_t 
   return true;
 }
 
-void CachePoints::look_around(const RayScene& rays) {
+void CachePoints::look_around(const RayScene& rays, Progress& progress) {
   tbb::parallel_for(std::size_t(0), points_.size(), [&](std::size_t k) {
+    if (progress.cancelled()) return;
     Point& point = points_[k];
     const glm::vec3 n = point.geometric_normal;
     glm::vec3 tangent, bitangent;
@@ -147,6 +153,7 @@ void CachePoints::look_around(const RayScene& rays) {
       point.nearness[s] = hit.hit ? static_cast<std::uint8_t>(std::min(nearness, 255.0f)) : 0;
     }
   });
+  if (progress.cancelled()) throw Interrupted("interrupted while lighting; nothing of it is kept");
   rays_cast_ += points_.size() * kSectors;
 }
 

@@ -9,6 +9,7 @@
 #include <glm/glm.hpp>
 #include <vector>
 
+#include "content/progress.h"
 #include "content/scene/ray_scene.h"
 #include "content/scene/scene.h"
 
@@ -27,7 +28,7 @@ class CachePoints {
   };
 
   // Spacing is raised until at most max_points are needed; spacing_m() says what it became.
-  CachePoints(const Scene& scene, const RayScene& rays, double spacing_m, std::size_t max_points);
+  CachePoints(const Scene& scene, const RayScene& rays, double spacing_m, std::size_t max_points, Progress& progress);
 
   std::size_t size() const { return points_.size(); }
   const Point& operator[](std::size_t k) const { return points_[k]; }
@@ -50,8 +51,8 @@ class CachePoints {
     std::uint32_t first = 0, count = 0;
   };
 
-  bool scatter(const Scene& scene, const RayScene& rays, std::size_t max_points);
-  void look_around(const RayScene& rays);
+  bool scatter(const Scene& scene, const RayScene& rays, std::size_t max_points, Progress& progress);
+  void look_around(const RayScene& rays, Progress& progress);
   void build_index();
   std::uint64_t cell_key(glm::ivec3 cell) const;
   const Bucket* find(std::uint64_t key) const;

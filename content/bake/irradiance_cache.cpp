@@ -121,7 +121,7 @@ struct IrradianceCache::Gather {
 
 IrradianceCache::IrradianceCache(const Scene& scene, const RayScene& rays, const DirectLight& direct,
                                  const LightOptions& options, Progress& progress, std::vector<glm::vec3> kept)
-    : points_(scene, rays, options.cache_spacing_m, kMaxPoints), rays_cast_(points_.rays_cast()) {
+    : points_(scene, rays, options.cache_spacing_m, kMaxPoints, progress), rays_cast_(points_.rays_cast()) {
   if (!kept.empty() && kept.size() == points_.size()) {
     indirect_ = std::move(kept);
     return;
