@@ -21,7 +21,8 @@ TEST(GltfDefects, VerticesThatAreNotFiniteCostTheirTriangles) {
     GltfScene small = GltfScene::floor();
     small.json["accessors"][0] = small.json["accessors"][static_cast<std::size_t>(
         small.add_floats({bad, 0, 0, 4, 0, 0, 4, 0, -4, 0, 0, -4}, "VEC3"))];
-    small.primitive()["indices"] = small.add_accessor(bytes_of<std::uint16_t>({0, 1, 2, 1, 2, 3, 0, 2, 3}), 5123, "SCALAR", 9);
+    small.primitive()["indices"] =
+        small.add_accessor(bytes_of<std::uint16_t>({0, 1, 2, 1, 2, 3, 0, 2, 3}), 5123, "SCALAR", 9);
     const Scene scene = small.load();
     EXPECT_EQ(scene.triangles.size(), 1u) << bad;
     EXPECT_THAT(scene.warnings, Contains(HasSubstr("2 triangles with corners that are not finite left out"))) << bad;
@@ -130,8 +131,9 @@ TEST(GltfDefects, OneMeshOfTwoMillionTrianglesLoadsInSeconds) {
   };
   file("positions.bin", bytes_of(positions));
   file("indices.bin", bytes_of(indices));
-  small.json["accessors"] = {{{"bufferView", 0}, {"componentType", 5126}, {"type", "VEC3"}, {"count", positions.size() / 3}},
-                             {{"bufferView", 1}, {"componentType", 5125}, {"type", "SCALAR"}, {"count", indices.size()}}};
+  small.json["accessors"] = {
+      {{"bufferView", 0}, {"componentType", 5126}, {"type", "VEC3"}, {"count", positions.size() / 3}},
+      {{"bufferView", 1}, {"componentType", 5125}, {"type", "SCALAR"}, {"count", indices.size()}}};
   small.add_mesh({{"attributes", {{"POSITION", 0}}}, {"indices", 1}});
   const std::clock_t begin = std::clock();
   const Scene scene = small.load();
