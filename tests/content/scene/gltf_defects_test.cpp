@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <chrono>
+#include <ctime>
 #include <limits>
 
 #include "content/scene/gltf_scene.h"
@@ -21,7 +21,8 @@ TEST(GltfDefects, VerticesThatAreNotFiniteCostTheirTriangles) {
     GltfScene small = GltfScene::floor();
     small.json["accessors"][0] = small.json["accessors"][static_cast<std::size_t>(
         small.add_floats({bad, 0, 0, 4, 0, 0, 4, 0, -4, 0, 0, -4}, "VEC3"))];
-    small.primitive()["indices"] = small.add_accessor(bytes_of<std::uint16_t>({0, 1, 2, 1, 2, 3, 0, 2, 3}), 5123, "SCALAR", 9);
+    small.primitive()["indices"] =
+        small.add_accessor(bytes_of<std::uint16_t>({0, 1, 2, 1, 2, 3, 0, 2, 3}), 5123, "SCALAR", 9);
     const Scene scene = small.load();
     EXPECT_EQ(scene.triangles.size(), 1u) << bad;
     EXPECT_THAT(scene.warnings, Contains(HasSubstr("2 triangles with corners that are not finite left out"))) << bad;
@@ -107,10 +108,10 @@ TEST(GltfDefects, UnknownExtensionsAreNamed) {
   EXPECT_THAT(small.refusal(), AllOf(HasSubstr("small.gltf"), HasSubstr("needs the extension VENDOR_glitter,")));
 }
 
-// One mesh of a million triangles, as scanners write them, loads in a moment; the bound leaves room for slow machines
-// and sanitizers.
-TEST(GltfDefects, OneMeshOfAMillionTrianglesLoadsInSeconds) {
-  constexpr std::uint32_t kSide = 708;
+// One mesh of two million triangles, as scanners write them, loads in a moment. Processor time, as the machine may be busy
+// with other things; the bound leaves room for slow ones and for sanitizers.
+TEST(GltfDefects, OneMeshOfTwoMillionTrianglesLoadsInSeconds) {
+  constexpr std::uint32_t kSide = 1000;
   std::vector<float> positions;
   std::vector<std::uint32_t> indices;
   for (std::uint32_t x = 0; x <= kSide; ++x) {
@@ -130,14 +131,15 @@ TEST(GltfDefects, OneMeshOfAMillionTrianglesLoadsInSeconds) {
   };
   file("positions.bin", bytes_of(positions));
   file("indices.bin", bytes_of(indices));
-  small.json["accessors"] = {{{"bufferView", 0}, {"componentType", 5126}, {"type", "VEC3"}, {"count", positions.size() / 3}},
-                             {{"bufferView", 1}, {"componentType", 5125}, {"type", "SCALAR"}, {"count", indices.size()}}};
+  small.json["accessors"] = {
+      {{"bufferView", 0}, {"componentType", 5126}, {"type", "VEC3"}, {"count", positions.size() / 3}},
+      {{"bufferView", 1}, {"componentType", 5125}, {"type", "SCALAR"}, {"count", indices.size()}}};
   small.add_mesh({{"attributes", {{"POSITION", 0}}}, {"indices", 1}});
-  const auto begin = std::chrono::steady_clock::now();
+  const std::clock_t begin = std::clock();
   const Scene scene = small.load();
-  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
+  const double seconds = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
   EXPECT_EQ(scene.triangles.size(), 2u * kSide * kSide);
-  EXPECT_LT(seconds.count(), 20.0);
+  EXPECT_LT(seconds, 30.0);
 }
 
 }  // namespace

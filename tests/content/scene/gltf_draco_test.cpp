@@ -206,7 +206,8 @@ void append_varint(Stream& stream, std::uint32_t value) {
 
 TEST(GltfDraco, AnnouncedSizesAreCheckedBeforeMemoryIsTaken) {
   const auto mesh = grid(1);
-  const auto refusal = [&](Stream stream, std::uint32_t first, std::uint32_t second, std::uint8_t tables, std::size_t size) {
+  const auto refusal = [&](Stream stream, std::uint32_t first, std::uint32_t second, std::uint8_t tables,
+                           std::size_t size) {
     append_varint(stream, first);
     append_varint(stream, second);
     stream.push_back(tables);

@@ -35,7 +35,8 @@ std::vector<glm::vec3> corners(const Scene& scene, std::size_t triangle) {
 }
 
 void expect_near(const glm::vec3& a, const glm::vec3& b, float tolerance = 1e-5f) {
-  EXPECT_LT(glm::distance(a, b), tolerance) << a.x << " " << a.y << " " << a.z << " for " << b.x << " " << b.y << " " << b.z;
+  EXPECT_LT(glm::distance(a, b), tolerance)
+      << a.x << " " << a.y << " " << a.z << " for " << b.x << " " << b.y << " " << b.z;
 }
 
 TEST(GltfInstancing, PlacesByTranslationRotationAndScale) {

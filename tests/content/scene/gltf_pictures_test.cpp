@@ -173,8 +173,10 @@ TEST(GltfTextureTransform, EachPartAloneAndTheOrderOfAll) {
   EXPECT_TRUE(near(uv_of_second_vertex(Json::object()), {1, 0}));
   EXPECT_TRUE(near(uv_of_second_vertex({{"offset", {0.25, -0.5}}}), {1.25, -0.5}));
   EXPECT_TRUE(near(uv_of_second_vertex({{"scale", {3, 7}}}), {3, 0}));
-  EXPECT_TRUE(near(uv_of_second_vertex({{"rotation", 1.5707963267948966}}), {0, -1})) << "counter-clockwise on a map whose v points down";
-  EXPECT_TRUE(near(uv_of_second_vertex({{"rotation", 1.5707963267948966}, {"scale", {3, 7}}, {"offset", {10, 20}}}), {10, 17}));
+  EXPECT_TRUE(near(uv_of_second_vertex({{"rotation", 1.5707963267948966}}), {0, -1}))
+      << "counter-clockwise on a map whose v points down";
+  EXPECT_TRUE(near(uv_of_second_vertex({{"rotation", 1.5707963267948966}, {"scale", {3, 7}}, {"offset", {10, 20}}}),
+                   {10, 17}));
 }
 
 TEST(GltfTextureTransform, EmissionAndBaseColourHaveTheirOwn) {
