@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <cmath>
+#include <map>
 #include <optional>
 #include <set>
 
@@ -54,8 +55,8 @@ bool is_id(const std::string& id) {
   return true;
 }
 
-// "Living Room" -> "living-room"; numbered when taken.
-std::string unique_id(const std::string& name, const std::set<std::string>& taken) {
+// "Living Room" -> "living-room"; numbered when taken. `numbers`: the last one that each id has got.
+std::string unique_id(const std::string& name, const std::set<std::string>& taken, std::map<std::string, int>& numbers) {
   std::string id;
   for (const char c : name) {
     if ((c >= 'a' && c <= 'z') || (c >= '0' && c <= '9')) {
@@ -70,8 +71,8 @@ std::string unique_id(const std::string& name, const std::set<std::string>& take
   while (!id.empty() && id.back() == '-') id.pop_back();
   if (id.empty()) id = "room";
   if (!taken.contains(id)) return id;
-  for (int number = 2;; ++number) {
-    const std::string numbered = fmt::format("{}-{}", id, number);
+  for (int& number = numbers.try_emplace(id, 1).first->second;;) {
+    const std::string numbered = fmt::format("{}-{}", id, ++number);
     if (!taken.contains(numbered)) return numbered;
   }
 }
@@ -89,9 +90,11 @@ void rooms_from_file(const std::filesystem::path& file, SourceFiles& files, Scen
   const std::string name = file.string();
   const Bytes bytes = files.read(file, kMaxJsonBytes);
   json document;
+  std::size_t values = 0;
   try {
-    document = json::parse(bytes.begin(), bytes.end(), [](int depth, json::parse_event_t, const json&) {
+    document = json::parse(bytes.begin(), bytes.end(), [&](int depth, json::parse_event_t, const json&) {
       if (depth > kMaxJsonDepth) throw BadInput("JSON nested too deep");
+      if (++values > kMaxJsonValues) throw BadInput(fmt::format("more than {} JSON values", kMaxJsonValues));
       return true;
     });
   } catch (const json::exception& error) {
@@ -127,6 +130,7 @@ void rooms_from_nodes(const Document& document, const std::vector<NodeInstance>&
   const json* list = find_array(document.json, "nodes");
   if (!list) return;
   std::set<std::string> taken;
+  std::map<std::string, int> numbers;
   for (const NodeInstance& instance : nodes) {
     const json* extras = find_object((*list)[static_cast<std::size_t>(instance.node)], "extras");
     std::string name = extras ? string_member(*extras, "probewalk_room") : "";
@@ -138,7 +142,7 @@ void rooms_from_nodes(const Document& document, const std::vector<NodeInstance>&
     const std::optional<glm::dvec3> upper = vector_member(where, *extras, "probewalk_room_max");
     if (!lower || !upper) throw BadInput(where + ": needs 'probewalk_room_min' and 'probewalk_room_max'");
     check_box(where, *lower, *upper);
-    AuthoredRoom room{unique_id(name, taken), name, glm::dvec3(1e300), glm::dvec3(-1e300)};
+    AuthoredRoom room{unique_id(name, taken, numbers), name, glm::dvec3(1e300), glm::dvec3(-1e300)};
     for (int corner = 0; corner < 8; ++corner) {
       const glm::dvec3 local(corner & 1 ? upper->x : lower->x, corner & 2 ? upper->y : lower->y,
                              corner & 4 ? upper->z : lower->z);
@@ -147,6 +151,11 @@ void rooms_from_nodes(const Document& document, const std::vector<NodeInstance>&
       room.upper_m = glm::max(room.upper_m, world);
     }
     check_box(where, room.lower_m, room.upper_m);
+    for (int c = 0; c < 3; ++c) {
+      if (!(room.lower_m[c] > -kMaxCoordinate && room.upper_m[c] < kMaxCoordinate)) {
+        throw BadInput(fmt::format("{}: its node moves the box out of range; check the node's transform", where));
+      }
+    }
     taken.insert(room.id);
     scene.rooms.push_back(room);
   }

@@ -21,6 +21,17 @@ bool starts_with(std::span<const std::uint8_t> bytes, const std::array<std::uint
   return bytes.size() >= N && std::equal(magic.begin(), magic.end(), bytes.begin());
 }
 
+// Whether that many pixels can be in that many bytes: a hundred bytes that announce a gigabyte are refused before it is
+// allocated. Deflate makes at most 1032 bytes of one; a JPEG spends at least a bit on each block of 64 pixels.
+bool can_hold(std::span<const std::uint8_t> encoded, std::uint64_t width, std::uint64_t height) {
+  constexpr std::size_t kAtDepth = 24, kAtColorType = 25;
+  if (!starts_with(encoded, kPngMagic)) return width * height <= 512 * encoded.size();
+  if (encoded.size() <= kAtColorType) return false;
+  constexpr std::array<std::uint64_t, 7> kChannels{1, 1, 3, 1, 2, 1, 4};  // by colour type
+  const std::uint64_t bits = encoded[kAtDepth] * kChannels[std::min<std::size_t>(encoded[kAtColorType], 6)];
+  return height * ((width * bits + 7) / 8) <= 1032 * encoded.size();
+}
+
 struct FreePixels {
   void operator()(stbi_uc* pixels) const { stbi_image_free(pixels); }
 };
@@ -48,6 +59,10 @@ DecodedImage decode_image(std::span<const std::uint8_t> encoded) {
   }
   if (width < 1 || height < 1 || width > kMaxImageSide_px || height > kMaxImageSide_px) {
     image.problem = fmt::format("is {} x {} pixels, more than {} a side", width, height, kMaxImageSide_px);
+    return image;
+  }
+  if (!can_hold(encoded, static_cast<std::uint64_t>(width), static_cast<std::uint64_t>(height))) {
+    image.problem = fmt::format("is damaged: {} x {} pixels cannot be in its {} bytes", width, height, encoded.size());
     return image;
   }
   const std::unique_ptr<stbi_uc, FreePixels> pixels(

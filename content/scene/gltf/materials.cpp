@@ -50,7 +50,7 @@ class TextureImporter {
     if (!image.problem.empty()) {
       warn(fmt::format("image '{}' {}", document_.images[description.source].name, image.problem));
     } else {
-      count_texels(image.level);
+      count_texels(image.level, texels_);
       Texture result;
       result.name = document_.images[description.source].name;
       result.wrap_u = std::get<1>(key);
@@ -64,25 +64,32 @@ class TextureImporter {
     return index;
   }
 
-  // Mean of two channels of a picture, (1, 1) when it cannot be had.
-  glm::vec2 mean(int texture, int first_channel, int second_channel) {
-    const tinygltf::Texture& description = find(texture);
-    if (description.source < 0) return glm::vec2(1.0f);
-    const DecodedImage image = decode(description.source);
-    if (!image.problem.empty()) return glm::vec2(1.0f);
-    std::uint64_t first = 0;
-    std::uint64_t second = 0;
-    const std::vector<std::uint8_t>& rgba = image.level.rgba;
-    for (std::size_t i = 0; i < rgba.size(); i += 4) {
-      first += rgba[i + first_channel];
-      second += rgba[i + second_channel];
-    }
-    const double total = 255.0 * static_cast<double>(rgba.size() / 4);
-    return {static_cast<double>(first) / total, static_cast<double>(second) / total};
+  // Mean of a picture's green and blue, (1, 1) when it cannot be had. Decoded once, however many materials ask.
+  glm::vec2 mean_green_blue(int texture) {
+    const int source = find(texture).source;
+    if (source < 0) return glm::vec2(1.0f);
+    const auto [known, added] = means_.try_emplace(source, glm::vec2(1.0f));
+    if (added) known->second = decoded_mean(source);
+    return known->second;
   }
 
  private:
   using Key = std::tuple<int, WrapMode, WrapMode, bool>;
+
+  glm::vec2 decoded_mean(int source) {
+    const DecodedImage image = decode(source);
+    if (!image.problem.empty()) return glm::vec2(1.0f);
+    count_texels(image.level, averaged_texels_);
+    std::uint64_t green = 0;
+    std::uint64_t blue = 0;
+    const std::vector<std::uint8_t>& rgba = image.level.rgba;
+    for (std::size_t i = 0; i < rgba.size(); i += 4) {
+      green += rgba[i + 1];
+      blue += rgba[i + 2];
+    }
+    const double total = 255.0 * static_cast<double>(rgba.size() / 4);
+    return {static_cast<double>(green) / total, static_cast<double>(blue) / total};
+  }
 
   const tinygltf::Texture& find(int texture) const {
     if (texture < 0 || static_cast<std::size_t>(texture) >= document_.model.textures.size()) {
@@ -111,9 +118,9 @@ class TextureImporter {
     return {{}, fmt::format("is missing ({})", encoded.problem)};
   }
 
-  void count_texels(const Texture::Level& level) {
-    texels_ += static_cast<std::uint64_t>(level.width_px) * static_cast<std::uint64_t>(level.height_px);
-    if (texels_ > kMaxTexels) {
+  void count_texels(const Texture::Level& level, std::uint64_t& texels) {
+    texels += static_cast<std::uint64_t>(level.width_px) * static_cast<std::uint64_t>(level.height_px);
+    if (texels > kMaxTexels) {
       throw BadInput(fmt::format("{}: more than {} texels; scale its pictures down", document_.file, kMaxTexels));
     }
   }
@@ -124,7 +131,9 @@ class TextureImporter {
   BufferViews& views_;
   Scene& scene_;
   std::map<Key, int> textures_;
+  std::map<int, glm::vec2> means_;  // by image
   std::uint64_t texels_ = 0;
+  std::uint64_t averaged_texels_ = 0;
 };
 
 double number(const tinygltf::Value& object, const char* key, double fallback) {
@@ -189,7 +198,7 @@ Material convert(const Document& document, const tinygltf::Material& source, Tex
   material.metallic = within(pbr.metallicFactor, 0.0, 1.0, 1.0);
   material.roughness = within(pbr.roughnessFactor, 0.0, 1.0, 1.0);
   if (pbr.metallicRoughnessTexture.index >= 0) {
-    const glm::vec2 mean = textures.mean(pbr.metallicRoughnessTexture.index, 1, 2);
+    const glm::vec2 mean = textures.mean_green_blue(pbr.metallicRoughnessTexture.index);
     material.roughness *= mean.x;
     material.metallic *= mean.y;
   }
