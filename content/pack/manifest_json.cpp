@@ -282,6 +282,28 @@ Manifest read_manifest(const Member& m) {
   return manifest;
 }
 
+// Counts before anything is parsed: "[],[],[],..." would become twenty times its size.
+void check_json_size(std::string_view text, const std::string& source) {
+  std::uint64_t commas = 0, nested = 0;
+  bool quoted = false;
+  for (std::size_t at = 0; at < text.size(); ++at) {
+    const char c = text[at];
+    if (quoted) {
+      if (c == '\\') ++at;
+      if (c == '"') quoted = false;
+    } else if (c == '"' || c == '[' || c == '{') {
+      ++nested;
+      quoted = c == '"';
+    } else if (c == ',') {
+      ++commas;
+    }
+  }
+  if (nested > PackLimits::kManifestNested || commas + nested > PackLimits::kManifestValues) {
+    throw BadInput(fmt::format("{}: has {} JSON values, {} of them lists, objects or texts; at most {} and {} are read",
+                               source, commas + nested, nested, PackLimits::kManifestValues, PackLimits::kManifestNested));
+  }
+}
+
 json parse_json(const std::string& text, const std::string& source) {
   const auto within_depth = [&](int depth, json::parse_event_t, json&) {
     if (depth > kMaxDepth) throw BadInput(fmt::format("{}: is nested too deeply for a probe pack", source));
@@ -350,6 +372,7 @@ std::string serialise_manifest(const Manifest& manifest) {
     throw BadInput(fmt::format("cannot write the manifest: it would have {} bytes, at most {}; bake with fewer probes",
                                text.size(), PackLimits::kManifestBytes));
   }
+  check_json_size(text, "cannot write the manifest");
   const std::string hash = hash_of(text);
   text.replace(text.find(kHashMember) + kHashMember.size(), kHashDigits, hash);
   return text;
@@ -359,6 +382,7 @@ Manifest parse_manifest(const std::string& text, const std::string& source) {
   if (text.size() > PackLimits::kManifestBytes) {
     throw BadInput(fmt::format("{}: has {} bytes, at most {} are read", source, text.size(), PackLimits::kManifestBytes));
   }
+  check_json_size(text, source);
   const json document = parse_json(text, source);
   check_version(document, source);
   check_self_hash(text, source);

@@ -1,9 +1,12 @@
 #include "content/stream/chunk_loader.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 #include <exception>
 
+#include "content/error.h"
 #include "content/pack/pack_io.h"
 
 namespace probewalk {
@@ -81,9 +84,16 @@ LoadResult ChunkLoader::load(const Request& request) const {
     const std::vector<std::byte> chunk = source_.read(level);
     result.bytes_disk = chunk.size();
     RoomLevel maps = decode_level(manifest_, request.key.room, request.key.level, chunk);
+    std::uint64_t bytes_device = 0;
     for (ProbeMap& map : maps.probes) {
       loaded.probes.push_back(build_device_probe(map));
       map = ProbeMap{};  // a room at its finest need not be in memory twice
+      bytes_device += 4 * (loaded.probes.back().geometry.size() + loaded.probes.back().radiance.size());
+    }
+    // Residency keeps the budget by what the manifest says.
+    if (bytes_device > level.bytes_device) {
+      throw BadInput(fmt::format("chunk {} (room {}): needs {} bytes on the device, the manifest says {}; bake the pack again",
+                                 level.chunk, room.id, bytes_device, level.bytes_device));
     }
     deliver_(std::move(loaded));
   } catch (const std::exception& error) {

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "content/pack/pack_io.h"
+#include "content/probe/device_probe.h"
 
 namespace probewalk {
 
@@ -145,9 +146,12 @@ inline Manifest write_small_pack(const std::filesystem::path& pack, std::size_t 
   std::vector<std::vector<LevelEntry>> levels(rooms);
   for (std::size_t room = 0; room < rooms; ++room) {
     for (const int n : {8, 16}) {
-      const auto chunk = encode_chunk(noise_level(2, n, n, true, 100 * room + static_cast<std::size_t>(n)));
+      const RoomLevel level = noise_level(2, n, n, true, 100 * room + static_cast<std::size_t>(n));
+      const auto chunk = encode_chunk(level);
+      std::uint64_t bytes_device = 0;
+      for (const ProbeMap& map : level.probes) bytes_device += device_probe_bytes(n, n, count_cut_cells(map.geometry));
       levels[room].push_back({writer.add_chunk(chunk), static_cast<std::uint32_t>(n), static_cast<std::uint32_t>(n),
-                              chunk.size(), static_cast<std::uint64_t>(1000 * n), -1.0});
+                              chunk.size(), bytes_device, -1.0});
     }
   }
   Manifest manifest = small_manifest(levels);

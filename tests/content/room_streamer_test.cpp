@@ -85,6 +85,19 @@ TEST(ChunkLoader, BadChunksAndRefusingDevicesAreValues) {
   EXPECT_NE(errors[(LevelKey{7, 0})], "");
 }
 
+// The budget is kept by the manifest's sizes, so a manifest that states too little must not be believed.
+TEST(ChunkLoader, ALevelThatNeedsMoreOfTheDeviceThanItsManifestSaysIsNotDelivered) {
+  const TemporaryFolder folder("loader-understated");
+  Manifest m = write_small_pack(folder.path(), 1);
+  m.rooms[0].levels[1].bytes_device -= 1;
+  const FolderSource source(folder.path());
+  Deliveries deliveries;
+  ChunkLoader loader(m, source, deliveries.sink());
+  ASSERT_TRUE(loader.request({0, 1}));
+  EXPECT_THAT(wait_for(loader, 1).at(0).error, HasSubstr("bytes on the device"));
+  EXPECT_TRUE(deliveries.take().empty());
+}
+
 // A source that holds its readers until told.
 class GatedSource final : public ChunkSource {
  public:
