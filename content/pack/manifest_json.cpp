@@ -17,6 +17,7 @@
 #include <set>
 
 #include "content/error.h"
+#include "content/json_limits.h"
 #include "content/pack/floor_code.h"
 #include "content/pack/manifest_check.h"
 #include "content/pack/pack_format.h"
@@ -282,35 +283,16 @@ Manifest read_manifest(const Member& m) {
   return manifest;
 }
 
-// Counts before anything is parsed: "[],[],[],..." would become twenty times its size.
 void check_json_size(std::string_view text, const std::string& source) {
-  std::uint64_t commas = 0, nested = 0;
-  bool quoted = false;
-  for (std::size_t at = 0; at < text.size(); ++at) {
-    const char c = text[at];
-    if (quoted) {
-      if (c == '\\') ++at;
-      if (c == '"') quoted = false;
-    } else if (c == '"' || c == '[' || c == '{') {
-      ++nested;
-      quoted = c == '"';
-    } else if (c == ',') {
-      ++commas;
-    }
-  }
-  if (nested > PackLimits::kManifestNested || commas + nested > PackLimits::kManifestValues) {
-    throw BadInput(fmt::format("{}: has {} JSON values, {} of them lists, objects or texts; at most {} and {} are read",
-                               source, commas + nested, nested, PackLimits::kManifestValues, PackLimits::kManifestNested));
-  }
+  constexpr JsonLimits kLimits{PackLimits::kManifestValues, PackLimits::kManifestNested, kMaxDepth};
+  const std::string beyond = beyond_json_limits(text, kLimits);
+  if (!beyond.empty()) throw BadInput(fmt::format("{}: {}; that is no manifest of a probe pack", source, beyond));
 }
 
 json parse_json(const std::string& text, const std::string& source) {
-  const auto within_depth = [&](int depth, json::parse_event_t, json&) {
-    if (depth > kMaxDepth) throw BadInput(fmt::format("{}: is nested too deeply for a probe pack", source));
-    return true;
-  };
+  check_json_size(text, source);
   try {
-    return json::parse(text, within_depth);
+    return json::parse(text);
   } catch (const json::exception&) {
     throw BadInput(fmt::format("{}: is truncated or no JSON; bake the pack again or copy it anew", source));
   }
@@ -382,7 +364,6 @@ Manifest parse_manifest(const std::string& text, const std::string& source) {
   if (text.size() > PackLimits::kManifestBytes) {
     throw BadInput(fmt::format("{}: has {} bytes, at most {} are read", source, text.size(), PackLimits::kManifestBytes));
   }
-  check_json_size(text, source);
   const json document = parse_json(text, source);
   check_version(document, source);
   check_self_hash(text, source);

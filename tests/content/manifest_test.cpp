@@ -124,8 +124,9 @@ TEST(Manifest, JsonThatGrowsWhenParsedIsRefusedBefore) {
     for (std::size_t k = 0; k < times; ++k) text += piece;
     return text + "0]}";
   };
-  EXPECT_THAT(refusal(repeated("[],", (1u << 22) + 1)), HasSubstr("JSON values"));
-  EXPECT_THAT(refusal(repeated("\"\",", (1u << 22) + 1)), HasSubstr("JSON values"));
+  EXPECT_THAT(refusal(repeated("[],", (1u << 22) + 1)), HasSubstr("JSON lists, objects and texts"));
+  EXPECT_THAT(refusal(repeated("{},", 1u << 19)), HasSubstr("not the manifest")) << "and in seconds";
+  EXPECT_THAT(refusal(repeated("\"\",", (1u << 22) + 1)), HasSubstr("JSON lists, objects and texts"));
   EXPECT_THAT(refusal(repeated("0,", (1u << 24) + 1)), HasSubstr("JSON values"));
   EXPECT_THAT(refusal("{\"preview\":\"" + std::string(1u << 23, '[') + "\\\"\"}"), HasSubstr("not the manifest"));
 }

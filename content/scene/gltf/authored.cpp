@@ -9,6 +9,7 @@
 #include <set>
 
 #include "content/error.h"
+#include "content/json_limits.h"
 #include "content/scene/gltf/limits.h"
 
 namespace probewalk::gltf {
@@ -90,17 +91,13 @@ void rooms_from_file(const std::filesystem::path& file, SourceFiles& files, Scen
   const std::string name = file.string();
   const Bytes bytes = files.read(file, kMaxJsonBytes);
   json document;
-  std::size_t values = 0;
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  const std::string beyond = beyond_json_limits(text, {kMaxJsonValues, kMaxJsonValues, kMaxJsonDepth});
+  if (!beyond.empty()) throw BadInput(fmt::format("{}: {}", name, beyond));
   try {
-    document = json::parse(bytes.begin(), bytes.end(), [&](int depth, json::parse_event_t, const json&) {
-      if (depth > kMaxJsonDepth) throw BadInput("JSON nested too deep");
-      if (++values > kMaxJsonValues) throw BadInput(fmt::format("more than {} JSON values", kMaxJsonValues));
-      return true;
-    });
+    document = json::parse(text);
   } catch (const json::exception& error) {
     throw BadInput(fmt::format("{}: damaged JSON ({})", name, error.what()));
-  } catch (const BadInput& error) {
-    throw BadInput(fmt::format("{}: {}", name, error.what()));
   }
   const json* rooms = find_array(document, "rooms");
   if (!rooms) throw BadInput(name + ": no list 'rooms'; expected {\"rooms\": [{\"id\", \"name\", \"min\", \"max\"}]}");

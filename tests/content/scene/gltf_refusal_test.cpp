@@ -248,6 +248,18 @@ TEST(GltfRefusal, AFenceWithoutEndIsGivenLightInTime) {
   EXPECT_THAT(small.load().light_statement, HasSubstr("soft sky"));
 }
 
+TEST(GltfRefusal, AListOfManyObjectsIsReadInTime) {
+  constexpr int kNodes = 200000;
+  GltfScene small = GltfScene::floor();
+  Json nodes = small.json["nodes"];
+  for (int i = 1; i < kNodes; ++i) nodes.push_back({{"name", "n"}});
+  small.json["nodes"] = nodes;
+  EXPECT_EQ(small.load().triangles.size(), 2u);
+  std::string rubbish = R"({"asset":{"version":"2.0"},"extras":[)";
+  for (int i = 0; i < 1000000; ++i) rubbish += "{},";
+  EXPECT_THAT(refusal(GltfScene::write("rubbish.gltf", rubbish + "0]}")), HasSubstr("no triangle"));
+}
+
 TEST(GltfRefusal, ATruncatedFileAtEveryLength) {
   const std::string whole = GltfScene::floor().glb();
   for (std::size_t length = 0; length < whole.size(); ++length) {
