@@ -17,6 +17,7 @@
 #include <set>
 
 #include "content/error.h"
+#include "content/json_limits.h"
 #include "content/pack/floor_code.h"
 #include "content/pack/manifest_check.h"
 #include "content/pack/pack_format.h"
@@ -282,13 +283,16 @@ Manifest read_manifest(const Member& m) {
   return manifest;
 }
 
+void check_json_size(std::string_view text, const std::string& source) {
+  constexpr JsonLimits kLimits{PackLimits::kManifestValues, PackLimits::kManifestNested, kMaxDepth};
+  const std::string beyond = beyond_json_limits(text, kLimits);
+  if (!beyond.empty()) throw BadInput(fmt::format("{}: {}; that is no manifest of a probe pack", source, beyond));
+}
+
 json parse_json(const std::string& text, const std::string& source) {
-  const auto within_depth = [&](int depth, json::parse_event_t, json&) {
-    if (depth > kMaxDepth) throw BadInput(fmt::format("{}: is nested too deeply for a probe pack", source));
-    return true;
-  };
+  check_json_size(text, source);
   try {
-    return json::parse(text, within_depth);
+    return json::parse(text);
   } catch (const json::exception&) {
     throw BadInput(fmt::format("{}: is truncated or no JSON; bake the pack again or copy it anew", source));
   }
@@ -350,6 +354,7 @@ std::string serialise_manifest(const Manifest& manifest) {
     throw BadInput(fmt::format("cannot write the manifest: it would have {} bytes, at most {}; bake with fewer probes",
                                text.size(), PackLimits::kManifestBytes));
   }
+  check_json_size(text, "cannot write the manifest");
   const std::string hash = hash_of(text);
   text.replace(text.find(kHashMember) + kHashMember.size(), kHashDigits, hash);
   return text;

@@ -50,6 +50,9 @@ enum class ChunkCodec : std::uint32_t { kRaw = 0, kZstd = 1 };
 // What a reader accepts. Checked before anything is allocated.
 struct PackLimits {
   static constexpr std::uint64_t kManifestBytes = 64ull << 20;
+  // Parsed JSON takes far more memory than its text: 16 bytes a value, 50 more for each list, object or text.
+  static constexpr std::uint64_t kManifestValues = 1ull << 24;
+  static constexpr std::uint64_t kManifestNested = 1ull << 22;  // lists, objects and texts
   static constexpr std::uint32_t kRooms = 65536;
   static constexpr std::uint32_t kProbesPerRoom = 4096;
   static constexpr std::uint32_t kMapSide = 8192;

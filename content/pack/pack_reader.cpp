@@ -3,10 +3,12 @@
 #include <cmath>
 
 #include "content/error.h"
+#include "content/pack/chunk_layout.h"
 #include "content/pack/file_io.h"
 #include "content/pack/manifest_check.h"
 #include "content/pack/pack_format.h"
 #include "content/pack/pack_io.h"
+#include "content/probe/device_probe.h"
 
 namespace probewalk {
 
@@ -16,19 +18,26 @@ namespace {
 
 constexpr const char* kRemedy = "bake the pack again or copy it anew";
 
-// The chunk is sound by itself; is it the one that the manifest means?
-void check_belongs(const RoomLevel& found, const Manifest& manifest, const RoomEntry& room, const LevelEntry& level,
-                   const std::string& source) {
+// Before anything is decompressed: no more than the manifest says, which budgets are kept by.
+void check_size(const ChunkCounts& counts, const RoomEntry& room, const LevelEntry& level, const std::string& source) {
   const auto require = [&](bool holds, const char* what) {
     if (!holds) throw BadInput(fmt::format("{}: {} differ from the manifest's; {}", source, what, kRemedy));
   };
-  require(found.probes.size() == room.probe_count, "number of probes");
+  require(counts.probes == room.probe_count, "number of probes");
+  require(counts.geometry_n == level.geometry_size && counts.radiance_r == level.radiance_size, "map sizes");
+  const std::uint64_t without_cuts =
+      device_probe_bytes(static_cast<int>(counts.geometry_n), static_cast<int>(counts.radiance_r), 0);
+  require(level.bytes_device / counts.probes >= without_cuts, "bytes on the device");
+}
+
+// The chunk is sound by itself; is it the one that the manifest means?
+void check_belongs(const RoomLevel& found, const Manifest& manifest, const RoomEntry& room, const std::string& source) {
+  const auto require = [&](bool holds, const char* what) {
+    if (!holds) throw BadInput(fmt::format("{}: {} differ from the manifest's; {}", source, what, kRemedy));
+  };
   require(found.origin_m == room.origin_m, "room origin");
   for (std::size_t p = 0; p < found.probes.size(); ++p) {
     const ProbeMap& probe = found.probes[p];
-    require(probe.geometry.n == static_cast<int>(level.geometry_size) &&
-                probe.radiance.r == static_cast<int>(level.radiance_size),
-            "map sizes");
     // Chunks hold positions as float offsets from the origin.
     const glm::dvec3 true_position_m = manifest.probe_positions_m[room.first_probe + p];
     const double reach_m = glm::length(true_position_m - room.origin_m);
@@ -78,8 +87,9 @@ RoomLevel decode_level(const Manifest& manifest, std::size_t room, std::size_t l
   const RoomEntry& room_entry = manifest.rooms.at(room);
   const LevelEntry& level_entry = room_entry.levels.at(level);
   const std::string source = fmt::format("chunk {} (room {}, level {})", level_entry.chunk, room_entry.id, level);
+  check_size(read_chunk_header(bytes, source).counts, room_entry, level_entry, source);
   RoomLevel found = decode_chunk(bytes, source);
-  check_belongs(found, manifest, room_entry, level_entry, source);
+  check_belongs(found, manifest, room_entry, source);
   return found;
 }
 

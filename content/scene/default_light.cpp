@@ -154,8 +154,10 @@ void fit_column(const RayScene& rays, glm::vec3 from, std::vector<Panel>& panels
 std::vector<Panel> candidates(const RayScene& rays, const Bounds& bounds) {
   const glm::dvec3 size = bounds.upper_m - bounds.lower_m;
   const double column_m = std::max(kMinColumn_m, std::sqrt(size.x * size.z / kMaxColumns));
-  const int columns_x = std::max(1, static_cast<int>(size.x / column_m));
-  const int columns_z = std::max(1, static_cast<int>(size.z / column_m));
+  // A scene far longer than wide, a kilometre of fence, would have more in its one row.
+  const auto columns_of = [&](double size_m) { return static_cast<int>(std::clamp(size_m / column_m, 1.0, double{kMaxColumns})); };
+  const int columns_x = columns_of(size.x);
+  const int columns_z = columns_of(size.z);
   std::vector<Panel> panels;
   for (int z = 0; z < columns_z; ++z) {
     for (int x = 0; x < columns_x; ++x) {

@@ -154,7 +154,9 @@ PW_FUNCTION pw_vec3 ray_radiance(GridConstants grid, TraceConstants dials, RayAn
   bool far = answer.cls == kClassMiss || answer.environment;
   real3 x = far ? d : relative_origin(probe, origin_hi, origin_lo) + d * answer.t;
   float len1 = float(abs(x.x) + abs(x.y) + abs(x.z));
-  if (!(len1 > 0.0f)) {
+  // A piece between the sky and something far away can be met at any distance, beyond what squares of floats can hold:
+  // there the direction alone decides, as for the sky.
+  if (!(len1 > 0.0f && len1 < 1e15f)) {
     x = d;
     len1 = float(abs(x.x) + abs(x.y) + abs(x.z));
     far = true;

@@ -9,6 +9,7 @@
 #include "content/pack/base64.h"
 #include "content/pack/floor_code.h"
 #include "content/pack/manifest.h"
+#include "content/pack/zstd_stream.h"
 #include "pack_fixture.h"
 
 namespace probewalk {
@@ -116,6 +117,20 @@ TEST(Manifest, ForeignAndNewerTextsAreRefusedByName) {
   EXPECT_THAT(refusal(std::string(100000, '[')), HasSubstr("nested"));
 }
 
+// A few megabytes of text that would be gigabytes once parsed; and the same signs inside a text, which are harmless.
+TEST(Manifest, JsonThatGrowsWhenParsedIsRefusedBefore) {
+  const auto repeated = [](const std::string& piece, std::size_t times) {
+    std::string text = "{\"preview\":[";
+    for (std::size_t k = 0; k < times; ++k) text += piece;
+    return text + "0]}";
+  };
+  EXPECT_THAT(refusal(repeated("[],", (1u << 22) + 1)), HasSubstr("JSON lists, objects and texts"));
+  EXPECT_THAT(refusal(repeated("{},", 1u << 19)), HasSubstr("not the manifest")) << "and in seconds";
+  EXPECT_THAT(refusal(repeated("\"\",", (1u << 22) + 1)), HasSubstr("JSON lists, objects and texts"));
+  EXPECT_THAT(refusal(repeated("0,", (1u << 24) + 1)), HasSubstr("JSON values"));
+  EXPECT_THAT(refusal("{\"preview\":\"" + std::string(1u << 23, '[') + "\\\"\"}"), HasSubstr("not the manifest"));
+}
+
 TEST(Manifest, MembersAddedLaterAreIgnored) { EXPECT_EQ(refusal_with("/preview", "picture.png"), "accepted"); }
 
 TEST(Manifest, BadMembersAreNamed) {
@@ -209,6 +224,19 @@ TEST(FloorCode, ALargeFloorIsSmall) {
   }
   EXPECT_FALSE(decode_floor_nodes(text, nodes.size() - 1).has_value());
   EXPECT_FALSE(decode_floor_nodes(text, nodes.size() + 1).has_value());
+}
+
+TEST(FloorCode, BombsAndHugeWindowsAreRefused) {
+  const std::vector<std::byte> zeros(64 << 20);
+  EXPECT_FALSE(decode_floor_nodes(base64_encode(zstd_compress(zeros)), 10).has_value());
+  // A frame that is sound but for a window of 16 MiB: magic, no content size, window descriptor, one raw block, empty.
+  for (const auto& [window, accepted] : {std::pair(13u << 3, true), std::pair(14u << 3, false)}) {
+    std::vector<std::byte> frame;
+    for (const unsigned byte : {0x28u, 0xb5u, 0x2fu, 0xfdu, 0x00u, window, 0x01u, 0x00u, 0x00u}) {
+      frame.push_back(static_cast<std::byte>(byte));
+    }
+    EXPECT_EQ(decode_floor_nodes(base64_encode(frame), 0).has_value(), accepted) << window;
+  }
 }
 
 TEST(Base64, RoundTripAndRefusals) {

@@ -132,6 +132,69 @@ TEST(Pack, ASoundChunkInTheWrongPlaceIsFound) {
   EXPECT_THROW(Pack::open(folder.path()).read_level(0, 0), BadInput);
 }
 
+// Links are followed, as everywhere on disk, but a chunk is what its hash says wherever it lies: a link leaks nothing,
+// and writing replaces the link, never what it points to.
+TEST(Pack, LinksAmongTheChunksReadOnlyWhatTheirNamesSay) {
+  const TemporaryFolder folder("pack-links");
+  const fs::path chunks = folder.path() / "p/chunks";
+  const auto sound = encode_chunk(noise_level(1, 8, 8, false));
+  const std::string hash = PackWriter(folder.path() / "p").add_chunk(sound);
+  const auto link_to = [&](const fs::path& target) {
+    fs::remove(chunks / hash);
+    fs::create_symlink(target, chunks / hash);
+  };
+  const auto refused_with = [&](const fs::path& target) -> std::string {
+    link_to(target);
+    try {
+      read_chunk_file(folder.path() / "p", hash, sound.size());
+    } catch (const BadInput& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  fs::rename(chunks / hash, folder.path() / "elsewhere");
+  EXPECT_EQ(refused_with(folder.path() / "elsewhere"), "accepted");
+  const std::string secret(sound.size(), 's');
+  write_text(folder.path() / "secret", secret);
+  EXPECT_THAT(refused_with(folder.path() / "secret"), testing::AllOf(HasSubstr("damaged"), testing::Not(HasSubstr("sss"))));
+  EXPECT_THAT(refused_with("/dev/zero"), HasSubstr("no regular file"));
+  EXPECT_THAT(refused_with(chunks), HasSubstr("no regular file"));
+  EXPECT_THAT(refused_with("nowhere"), HasSubstr("cannot read"));
+  EXPECT_THAT(refused_with(chunks / hash), HasSubstr("cannot read"));  // to itself
+
+  link_to(folder.path() / "secret");
+  PackWriter(folder.path() / "p").add_chunk(sound);
+  EXPECT_FALSE(fs::is_symlink(chunks / hash));
+  EXPECT_EQ(read_chunk_file(folder.path() / "p", hash, sound.size()), sound);
+  const auto kept = read_file(folder.path() / "secret", secret.size());
+  EXPECT_EQ(std::string(reinterpret_cast<const char*>(kept.data()), kept.size()), secret);
+}
+
+TEST(Pack, ALevelThatIsLargerThanItsManifestSaysIsRefusedBeforeItIsDecompressed) {
+  const TemporaryFolder folder("pack-understated");
+  Manifest m = write_small_pack(folder.path(), 1);
+  // The sections are rubbish: only the header can have been looked at.
+  auto chunk = encode_chunk(noise_level(2, 16, 16, true, 16));
+  std::fill(chunk.begin() + 200, chunk.end(), std::byte{0xff});
+  const auto refused = [&](const Manifest& manifest) -> std::string {
+    try {
+      decode_level(manifest, 0, 1, chunk);
+    } catch (const BadInput& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  EXPECT_THAT(refused(m), HasSubstr("position"));  // what its first section makes
+  Manifest fewer = m;
+  fewer.rooms[0].probe_count = 1;
+  EXPECT_THAT(refused(fewer), HasSubstr("number of probes differ"));
+  Manifest smaller = m;
+  smaller.rooms[0].levels[1].radiance_size = 8;
+  EXPECT_THAT(refused(smaller), HasSubstr("map sizes differ"));
+  m.rooms[0].levels[1].bytes_device = 2 * device_probe_bytes(16, 16, 0) - 1;
+  EXPECT_THAT(refused(m), HasSubstr("bytes on the device differ"));
+}
+
 TEST(Pack, WhatIsNoPackIsRefusedWithTheRemedy) {
   const TemporaryFolder folder("pack-foreign");
   EXPECT_THAT(refusal(folder.path() / "absent.probes"), HasSubstr("probewalk bake"));

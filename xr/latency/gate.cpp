@@ -32,14 +32,14 @@ const QuantityDefinition* quantity_named(std::string_view name) {
   return nullptr;
 }
 
-// Factor from a limit's unit to the quantity's own; none when they do not fit.
-std::optional<double> unit_factor(std::string_view unit, std::string_view quantity_unit) {
-  if (quantity_unit != "ns") return unit.empty() || unit == quantity_unit ? std::optional(1.0) : std::nullopt;
+// Factor from a limit's unit to the quantity's own; 0 when they do not fit.
+double unit_factor(std::string_view unit, std::string_view quantity_unit) {
+  if (quantity_unit != "ns") return unit.empty() || unit == quantity_unit ? 1.0 : 0.0;
   if (unit == "ns") return 1.0;
   if (unit == "us") return 1e3;
   if (unit == "ms") return 1e6;
   if (unit == "s") return 1e9;
-  return std::nullopt;
+  return 0.0;
 }
 
 GateCondition parse_condition(std::string_view part) {
@@ -64,9 +64,9 @@ GateCondition parse_condition(std::string_view part) {
   const QuantityDefinition* definition = quantity_named(quantity);
   const PercentileRank* rank = rank_named(what);
   if (definition == nullptr || (rank == nullptr && what != "max")) bad_gate(part);
-  const auto factor = unit_factor(unit, definition->unit);
-  if (!factor) bad_gate(part);
-  return {definition->name, rank != nullptr ? rank->name : "max", value * *factor};
+  const double factor = unit_factor(unit, definition->unit);
+  if (factor == 0.0) bad_gate(part);
+  return {definition->name, rank != nullptr ? rank->name : "max", value * factor};
 }
 
 }  // namespace

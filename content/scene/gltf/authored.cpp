@@ -4,10 +4,12 @@
 #include <fmt/ranges.h>
 
 #include <cmath>
+#include <map>
 #include <optional>
 #include <set>
 
 #include "content/error.h"
+#include "content/json_limits.h"
 #include "content/scene/gltf/limits.h"
 #include "content/text.h"
 
@@ -55,8 +57,8 @@ bool is_id(const std::string& id) {
   return true;
 }
 
-// "Living Room" -> "living-room"; numbered when taken.
-std::string unique_id(const std::string& name, const std::set<std::string>& taken) {
+// "Living Room" -> "living-room"; numbered when taken. `numbers`: the last one that each id has got.
+std::string unique_id(const std::string& name, const std::set<std::string>& taken, std::map<std::string, int>& numbers) {
   std::string id;
   for (const char c : name) {
     if ((c >= 'a' && c <= 'z') || (c >= '0' && c <= '9')) {
@@ -71,8 +73,8 @@ std::string unique_id(const std::string& name, const std::set<std::string>& take
   while (!id.empty() && id.back() == '-') id.pop_back();
   if (id.empty()) id = "room";
   if (!taken.contains(id)) return id;
-  for (int number = 2;; ++number) {
-    const std::string numbered = fmt::format("{}-{}", id, number);
+  for (int& number = numbers.try_emplace(id, 1).first->second;;) {
+    const std::string numbered = fmt::format("{}-{}", id, ++number);
     if (!taken.contains(numbered)) return numbered;
   }
 }
@@ -90,15 +92,13 @@ void rooms_from_file(const std::filesystem::path& file, SourceFiles& files, Scen
   const std::string name = file.string();
   const Bytes bytes = files.read(file, kMaxJsonBytes);
   json document;
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  const std::string beyond = beyond_json_limits(text, {kMaxJsonValues, kMaxJsonValues, kMaxJsonDepth});
+  if (!beyond.empty()) throw BadInput(fmt::format("{}: {}", name, beyond));
   try {
-    document = json::parse(bytes.begin(), bytes.end(), [](int depth, json::parse_event_t, const json&) {
-      if (depth > kMaxJsonDepth) throw BadInput("JSON nested too deep");
-      return true;
-    });
+    document = json::parse(text);
   } catch (const json::exception& error) {
     throw BadInput(fmt::format("{}: damaged JSON ({})", name, error.what()));
-  } catch (const BadInput& error) {
-    throw BadInput(fmt::format("{}: {}", name, error.what()));
   }
   const json* rooms = find_array(document, "rooms");
   if (!rooms) throw BadInput(name + ": no list 'rooms'; expected {\"rooms\": [{\"id\", \"name\", \"min\", \"max\"}]}");
@@ -128,6 +128,7 @@ void rooms_from_nodes(const Document& document, const std::vector<NodeInstance>&
   const json* list = find_array(document.json, "nodes");
   if (!list) return;
   std::set<std::string> taken;
+  std::map<std::string, int> numbers;
   for (const NodeInstance& instance : nodes) {
     const json* extras = find_object((*list)[static_cast<std::size_t>(instance.node)], "extras");
     std::string name = extras ? string_member(*extras, "probewalk_room") : "";
@@ -139,7 +140,7 @@ void rooms_from_nodes(const Document& document, const std::vector<NodeInstance>&
     const std::optional<glm::dvec3> upper = vector_member(where, *extras, "probewalk_room_max");
     if (!lower || !upper) throw BadInput(where + ": needs 'probewalk_room_min' and 'probewalk_room_max'");
     check_box(where, *lower, *upper);
-    AuthoredRoom room{unique_id(name, taken), name, glm::dvec3(1e300), glm::dvec3(-1e300)};
+    AuthoredRoom room{unique_id(name, taken, numbers), name, glm::dvec3(1e300), glm::dvec3(-1e300)};
     for (int corner = 0; corner < 8; ++corner) {
       const glm::dvec3 local(corner & 1 ? upper->x : lower->x, corner & 2 ? upper->y : lower->y,
                              corner & 4 ? upper->z : lower->z);
@@ -148,6 +149,11 @@ void rooms_from_nodes(const Document& document, const std::vector<NodeInstance>&
       room.upper_m = glm::max(room.upper_m, world);
     }
     check_box(where, room.lower_m, room.upper_m);
+    for (int c = 0; c < 3; ++c) {
+      if (!(room.lower_m[c] > -kMaxCoordinate && room.upper_m[c] < kMaxCoordinate)) {
+        throw BadInput(fmt::format("{}: its node moves the box out of range; check the node's transform", where));
+      }
+    }
     taken.insert(room.id);
     scene.rooms.push_back(room);
   }

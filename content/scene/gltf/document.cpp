@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "content/error.h"
+#include "content/json_limits.h"
 #include "content/scene/gltf/limits.h"
 
 namespace probewalk::gltf {
@@ -80,14 +81,10 @@ json parse(const std::string& file, std::string_view text) {
   if (text.size() > kMaxJsonBytes) {
     throw BadInput(fmt::format("{}: {} bytes of JSON, more than the limit of {}", file, text.size(), kMaxJsonBytes));
   }
-  std::size_t values = 0;
-  const auto within_limits = [&](int depth, json::parse_event_t, const json&) {
-    if (depth > kMaxJsonDepth) throw BadInput(fmt::format("{}: JSON nested deeper than {}", file, kMaxJsonDepth));
-    if (++values > kMaxJsonValues) throw BadInput(fmt::format("{}: more than {} JSON values", file, kMaxJsonValues));
-    return true;
-  };
+  const std::string beyond = beyond_json_limits(text, {kMaxJsonValues, kMaxJsonValues, kMaxJsonDepth});
+  if (!beyond.empty()) throw BadInput(fmt::format("{}: {}; simplify the scene", file, beyond));
   try {
-    json document = json::parse(text, within_limits);
+    json document = json::parse(text);
     if (!document.is_object()) throw BadInput(file + ": the JSON is not an object; not a glTF file");
     return document;
   } catch (const json::exception& error) {

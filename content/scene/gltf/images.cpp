@@ -22,6 +22,21 @@ bool is_webp(std::string_view text) {
   return text.starts_with("RIFF") && text.size() >= 12 && text.substr(8, 4) == "WEBP";
 }
 
+std::string_view text_of(std::span<const std::uint8_t> bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+// Whether that many pixels can be in that many bytes: a hundred bytes that announce a gigabyte are refused before it is
+// allocated. Deflate makes at most 1032 bytes of one; a JPEG spends at least a bit on each block of 64 pixels.
+bool can_hold(std::span<const std::uint8_t> encoded, std::uint64_t width, std::uint64_t height) {
+  constexpr std::size_t kAtDepth = 24, kAtColorType = 25;
+  if (!text_of(encoded).starts_with(kPngMagic)) return width * height <= 512 * encoded.size();
+  if (encoded.size() <= kAtColorType) return false;
+  constexpr std::array<std::uint64_t, 7> kChannels{1, 1, 3, 1, 2, 1, 4};  // by colour type
+  const std::uint64_t bits = encoded[kAtDepth] * kChannels[std::min<std::size_t>(encoded[kAtColorType], 6)];
+  return height * ((width * bits + 7) / 8) <= 1032 * encoded.size();
+}
+
 struct FreePixels {
   void operator()(stbi_uc* pixels) const { stbi_image_free(pixels); }
 };
@@ -68,6 +83,10 @@ DecodedImage decode_png_or_jpeg(std::span<const std::uint8_t> encoded) {
   }
   image.problem = size_problem(width, height);
   if (!image.problem.empty()) return image;
+  if (!can_hold(encoded, static_cast<std::uint64_t>(width), static_cast<std::uint64_t>(height))) {
+    image.problem = fmt::format("is damaged: {} x {} pixels cannot be in its {} bytes", width, height, encoded.size());
+    return image;
+  }
   const std::unique_ptr<stbi_uc, FreePixels> pixels(
       stbi_load_from_memory(encoded.data(), size, &width, &height, &channels, STBI_rgb_alpha));
   if (!pixels) {
@@ -83,7 +102,7 @@ DecodedImage decode_png_or_jpeg(std::span<const std::uint8_t> encoded) {
 }  // namespace
 
 DecodedImage decode_image(std::span<const std::uint8_t> encoded) {
-  const std::string_view text(reinterpret_cast<const char*>(encoded.data()), encoded.size());
+  const std::string_view text = text_of(encoded);
   if (encoded.size() > static_cast<std::size_t>(std::numeric_limits<int>::max())) return {{}, "is larger than 2 GiB"};
   if (is_webp(text)) return decode_webp(encoded);
   // stb would also try formats that glTF does not have, and whose decoders nobody hardened.

@@ -7,9 +7,12 @@
 #include <numbers>
 
 #include "content/error.h"
+#include "content/scene/gltf/limits.h"
 
 namespace probewalk::gltf {
 namespace {
+
+constexpr double kMaxIntensity = 1e12;  // candela or lux, of each channel
 
 Light::Kind light_kind(const std::string& file, const tinygltf::Light& light) {
   if (light.type == "point") return Light::Kind::kPoint;
@@ -19,7 +22,10 @@ Light::Kind light_kind(const std::string& file, const tinygltf::Light& light) {
                              light.type));
 }
 
-bool all_finite(const glm::dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+// NaN is not.
+bool all_within(const glm::dvec3& v, double limit) {
+  return std::abs(v.x) <= limit && std::abs(v.y) <= limit && std::abs(v.z) <= limit;
+}
 
 Light convert(const std::string& file, const tinygltf::Light& source, const glm::dmat4& world_from_node) {
   Light light;
@@ -32,7 +38,7 @@ Light convert(const std::string& file, const tinygltf::Light& source, const glm:
   for (int c = 0; c < 3 && c < static_cast<int>(source.color.size()); ++c) color[c] = source.color[c];
   const glm::dvec3 intensity = glm::max(color, glm::dvec3(0.0)) * source.intensity;
   const bool directed = light.kind != Light::Kind::kPoint;
-  if (!all_finite(position) || !all_finite(intensity) || source.intensity < 0.0 || source.intensity > 1e12 ||
+  if (!all_within(position, kMaxCoordinate) || !all_within(intensity, kMaxIntensity) || source.intensity < 0.0 ||
       (directed && !(length > 0.0 && std::isfinite(length)))) {
     throw BadInput(fmt::format("{}: light '{}' has no valid position, direction or intensity ({})", file, source.name,
                                source.intensity));

@@ -59,7 +59,10 @@ class TextureImporter {
       if (known != means_.end()) return known->second;
       if (problems_.contains(source)) continue;
       const DecodedImage image = decode(source);
-      if (image.problem.empty()) return means_.emplace(source, mean(image.level.rgba)).first->second;
+      if (image.problem.empty()) {
+        count_texels(image.level, averaged_texels_);
+        return means_.emplace(source, mean(image.level.rgba)).first->second;
+      }
       note_problem(source, image.problem);
     }
     return glm::vec2(1.0f);
@@ -122,7 +125,7 @@ class TextureImporter {
     if (!image.problem.empty()) {
       note_problem(source, image.problem);
     } else {
-      count_texels(image.level);
+      count_texels(image.level, texels_);
       Texture result;
       result.name = document_.images[source].name;
       result.wrap_u = std::get<1>(key);
@@ -158,9 +161,9 @@ class TextureImporter {
     return {{}, fmt::format("is missing ({})", encoded.problem)};
   }
 
-  void count_texels(const Texture::Level& level) {
-    texels_ += static_cast<std::uint64_t>(level.width_px) * static_cast<std::uint64_t>(level.height_px);
-    if (texels_ > kMaxTexels) {
+  void count_texels(const Texture::Level& level, std::uint64_t& texels) {
+    texels += static_cast<std::uint64_t>(level.width_px) * static_cast<std::uint64_t>(level.height_px);
+    if (texels > kMaxTexels) {
       throw BadInput(fmt::format("{}: more than {} texels; scale its pictures down", document_.file, kMaxTexels));
     }
   }
@@ -173,6 +176,7 @@ class TextureImporter {
   std::map<int, std::string> problems_;                        // by picture
   std::map<std::string, std::vector<std::string>> replacements_;  // by problem
   std::uint64_t texels_ = 0;
+  std::uint64_t averaged_texels_ = 0;
 };
 
 double number(const tinygltf::Value& object, const char* key, double fallback) {

@@ -211,6 +211,48 @@ ProbeSet room_set(const RayScene& rays, int n) {
   return ProbeSet(std::move(probes), grid);
 }
 
+// Between the sky and a sample a million kilometres away a piece runs off to any distance: beyond what a float can
+// square, and the light there must still come from the map.
+TEST(TraceRay, AHitBeyondWhatFloatsCanSquareHasLightOfTheMap) {
+  constexpr int n = 16;
+  ProbeMap map;
+  map.geometry.n = n;
+  for (int j = 0; j <= n; ++j) {
+    for (int i = 0; i <= n; ++i) map.geometry.w.push_back((i + j) % 2 == 0 ? 1e-9f : 0.0f);
+  }
+  map.geometry.normals.assign(map.geometry.w.size(), 0);
+  map.geometry.edges_horizontal.assign(n * (n + 1), kConnected);
+  map.geometry.edges_vertical.assign(n * (n + 1), kConnected);
+  map.geometry.edges_diagonal.assign(n * n, kConnected);
+  map.radiance.r = 8;
+  map.radiance.rgb9e5.assign(mip_chain_texels(8), encode_rgb9e5({1, 2, 3}));
+  map.radiance.texel_w.assign(64, encode_texel_w(1e-9f));
+  std::vector<DeviceProbe> probes{build_device_probe(map)};
+  ProbeGrid grid;
+  grid.probe = {0};
+  const ProbeSet set(std::move(probes), grid);
+  const TraceConstants dials = default_dials(1.0);
+  test::Random random(4);
+  int beyond = 0;
+  for (int k = 0; k < 200000; ++k) {
+    // Almost at a line of the map where w is zero: towards a vertex, a hair beside it.
+    const int i = static_cast<int>(random(0, n + 1)), j = static_cast<int>(random(0, n + 1));
+    const double hair = std::exp2(random(-40, -10));
+    const glm::vec3 d(glm::normalize(octahedral_point(2.0 * i / n - 1 + hair * random(-1, 1), 2.0 * j / n - 1 + hair * random(-1, 1))));
+    const glm::vec3 o(random.direction() * random(0, 2));
+    const f32::RayAnswer answer = f32::trace_ray(set.grid(), dials, o, glm::vec3(0), d, kStartLevel);
+    const bool is_beyond = answer.cls == kClassHit && answer.t > 2e19f;
+    beyond += is_beyond;
+    unsigned reads = 0;
+    const glm::vec3 light = f32::ray_radiance(set.grid(), dials, answer, o, glm::vec3(0), d, 1e-3f, reads);
+    ASSERT_TRUE(light.x > 0.99f && light.x < 1.01f && light.z > 2.97f && light.z < 3.03f) << answer.t << " " << light.x;
+    if (is_beyond) {
+      ASSERT_GE(reads, 8u) << "no mip but the finest is asked for the surface: the mip was no number";
+    }
+  }
+  EXPECT_GT(beyond, 0);
+}
+
 TEST(TraceRay, FindsWhatTheTrianglesSay) {
   const Scene scene = test::furnished_room();
   const RayScene rays(scene);

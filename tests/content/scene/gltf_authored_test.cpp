@@ -197,8 +197,9 @@ TEST(Authored, ARoomsFileWins) {
 }
 
 TEST(Authored, RefusesRoomsThatCannotBe) {
+  const std::string deep = R"({"rooms":)" + std::string(100000, '[');
   const char* const cases[] = {
-      "[]", "{", R"({"rooms":{}})", R"({"rooms":[1]})",
+      "[]", "{", R"({"rooms":{}})", R"({"rooms":[1]})", deep.c_str(),
       R"({"rooms":[{"id":"../x","min":[0,0,0],"max":[1,1,1]}]})",
       R"({"rooms":[{"id":"a","min":[0,0,0],"max":[1,1,0]}]})",
       R"({"rooms":[{"id":"a","min":[0,0],"max":[1,1,1]}]})",

@@ -63,6 +63,46 @@ TEST(GltfRefusal, UrisThatLeaveTheFolder) {
   EXPECT_THAT(refusal(small.write()), HasSubstr("../picture.png"));
 }
 
+// Percent signs are decoded before the path is judged, once: "%252e" is a file's name.
+TEST(GltfRefusal, PicturesOutsideTheFolderAreNotOpenedHoweverTheyAreSpelled) {
+  const std::vector<std::uint8_t> png = png_row({255, 255, 255, 255});
+  const std::filesystem::path outside = GltfScene::folder().parent_path() / "outside.png";
+  std::ofstream(outside, std::ios::binary).write(reinterpret_cast<const char*>(png.data()), static_cast<std::streamsize>(png.size()));
+  GltfScene::write("beside.png", std::string(png.begin(), png.end()));
+  const auto textures = [](const std::string& uri) -> std::size_t {
+    GltfScene small = GltfScene::floor();
+    small.set_material({{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}});
+    small.json["images"] = {{{"uri", uri}}};
+    small.json["textures"] = {{{"source", 0}}};
+    try {
+      return small.load().textures.size();
+    } catch (const BadInput&) {
+      return 0;
+    }
+  };
+  EXPECT_EQ(textures("beside.png"), 1u);
+  EXPECT_EQ(textures("b%65side.png"), 1u);
+  for (const std::string& uri : std::vector<std::string>{"../outside.png", "%2e%2e/outside.png", "%2E%2e%2foutside.png", ".%2e/outside.png",
+                                "%252e%252e/outside.png", outside.string(), "file://" + outside.string(),
+                                "%2f" + outside.string().substr(1)}) {
+    EXPECT_EQ(textures(uri), 0u) << uri;
+  }
+  std::filesystem::remove(outside);
+}
+
+// A hundred bytes that announce a gigabyte.
+TEST(GltfRefusal, PicturesThatAnnounceMoreThanTheyCanHold) {
+  std::vector<std::uint8_t> png = png_row({255, 255, 255, 255});
+  png[18] = png[22] = 0x40;  // width and height 16384 and more
+  png[19] = png[23] = 0;
+  std::vector<std::uint8_t> jpeg{0xff, 0xd8, 0xff, 0xc0, 0, 11, 8, 0x40, 0, 0x40, 0, 1, 1, 0x11, 0, 0xff, 0xd9};
+  for (const auto& bytes : {png, jpeg}) {
+    GltfScene small = GltfScene::floor();
+    small.set_material({{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", small.add_texture(bytes)}}}}}});
+    EXPECT_THAT(small.load().warnings, testing::Contains(HasSubstr("16384 x 16384 pixels cannot be in its")));
+  }
+}
+
 TEST(GltfRefusal, DocumentsThatContradictThemselves) {
   struct Case {
     const char* what;
@@ -124,6 +164,19 @@ TEST(GltfRefusal, DocumentsThatContradictThemselves) {
       {"empty room", [](Json& j) {
          j["nodes"][0]["extras"] = {{"probewalk_room", "A"}, {"probewalk_room_min", {1, 1, 1}}, {"probewalk_room_max", {0, 2, 2}}};
        }, "box is empty"},
+      {"room moved away", [](Json& j) {
+         j["nodes"][0]["scale"] = {1e300, 1e300, 1e300};
+         j["nodes"][0]["extras"] = {{"probewalk_room", "A"}, {"probewalk_room_min", {-1e9, -1, -1}}, {"probewalk_room_max", {1e9, 2, 2}}};
+       }, "out of range"},
+      {"light moved away", [](Json& j) {
+         j["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "point"}}};
+         j["nodes"][0]["extensions"]["KHR_lights_punctual"]["light"] = 0;
+         j["nodes"][0]["translation"] = {1e200, 0, 0};
+       }, "no valid position"},
+      {"light brighter than float", [](Json& j) {
+         j["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "point"}, {"color", {1e200, 0, 0}}}};
+         j["nodes"][0]["extensions"]["KHR_lights_punctual"]["light"] = 0;
+       }, "no valid position"},
       {"sparse beyond", [](Json& j) {
          j["accessors"][0]["sparse"] = {{"count", 3},
                                         {"indices", {{"bufferView", 2}, {"componentType", 5123}}},
@@ -170,6 +223,41 @@ TEST(GltfRefusal, InstancesOfInstancesAreBounded) {
   }
   small.json["scenes"][0]["nodes"] = roots;
   EXPECT_THAT(refusal(small.write()), HasSubstr("more than"));
+}
+
+// Work that grows faster than the file: numbering of equal names, columns of a fence without end.
+TEST(GltfRefusal, ManyRoomsOfOneNameAreNumberedInTheirOwnTime) {
+  constexpr int kRooms = 30000;
+  GltfScene small = GltfScene::floor();
+  for (int i = 1; i <= kRooms; ++i) {
+    small.json["nodes"].push_back({{"extras",
+        {{"probewalk_room", "Hall"}, {"probewalk_room_min", {0, 0, 0}}, {"probewalk_room_max", {1, 1, 1}}}}});
+    small.json["scenes"][0]["nodes"].push_back(i);
+  }
+  const Scene scene = small.load();
+  ASSERT_EQ(scene.rooms.size(), std::size_t{kRooms});
+  EXPECT_EQ(scene.rooms[0].id, "hall");
+  EXPECT_EQ(scene.rooms[1].id, "hall-2");
+  EXPECT_EQ(scene.rooms.back().id, "hall-30000");
+}
+
+TEST(GltfRefusal, AFenceWithoutEndIsGivenLightInTime) {
+  GltfScene small;
+  const int position = small.add_floats({0, 0, 0, 5e8f, 0, 0, 5e8f, 2, 0}, "VEC3");
+  small.add_mesh({{"attributes", {{"POSITION", position}}}});
+  EXPECT_THAT(small.load().light_statement, HasSubstr("soft sky"));
+}
+
+TEST(GltfRefusal, AListOfManyObjectsIsReadInTime) {
+  constexpr int kNodes = 200000;
+  GltfScene small = GltfScene::floor();
+  Json nodes = small.json["nodes"];
+  for (int i = 1; i < kNodes; ++i) nodes.push_back({{"name", "n"}});
+  small.json["nodes"] = nodes;
+  EXPECT_EQ(small.load().triangles.size(), 2u);
+  std::string rubbish = R"({"asset":{"version":"2.0"},"extras":[)";
+  for (int i = 0; i < 1000000; ++i) rubbish += "{},";
+  EXPECT_THAT(refusal(GltfScene::write("rubbish.gltf", rubbish + "0]}")), HasSubstr("no triangle"));
 }
 
 TEST(GltfRefusal, ATruncatedFileAtEveryLength) {

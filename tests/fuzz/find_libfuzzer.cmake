@@ -1,0 +1,16 @@
+# Before project(): the compiler is clang, or one line says what is missing.
+set(remedy "the preset fuzz needs clang with libFuzzer; on Debian 13: apt-get install clang-19 libclang-rt-19-dev")
+find_program(PROBEWALK_CLANGXX NAMES clang++ clang++-19 clang++-20 clang++-18 clang++-17)
+find_program(PROBEWALK_CLANG NAMES clang clang-19 clang-20 clang-18 clang-17)
+if(NOT PROBEWALK_CLANGXX OR NOT PROBEWALK_CLANG)
+  message(FATAL_ERROR "There is no clang++: ${remedy}")
+endif()
+set(probe ${CMAKE_BINARY_DIR}/find_libfuzzer)
+file(WRITE ${probe}.cpp "extern \"C\" int LLVMFuzzerTestOneInput(const unsigned char*, decltype(sizeof(0))) { return 0; }\n")
+execute_process(COMMAND ${PROBEWALK_CLANGXX} -fsanitize=fuzzer,address,undefined ${probe}.cpp -o ${probe}
+  RESULT_VARIABLE failed OUTPUT_QUIET ERROR_QUIET)
+if(failed)
+  message(FATAL_ERROR "${PROBEWALK_CLANGXX} cannot link -fsanitize=fuzzer,address,undefined: ${remedy}")
+endif()
+set(CMAKE_CXX_COMPILER ${PROBEWALK_CLANGXX} CACHE FILEPATH "" FORCE)
+set(CMAKE_C_COMPILER ${PROBEWALK_CLANG} CACHE FILEPATH "" FORCE)
