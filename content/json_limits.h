@@ -1,6 +1,6 @@
 // How much memory and recursion a JSON text would take, found before it is parsed: "[],[],[],..." becomes twenty times its
 // size. A scan of its own, as the callback of nlohmann's parser looks through a list again after each of its objects, so
-// that a list of a million objects would take an hour.
+// that a list of a million objects would take minutes.
 #pragma once
 
 #include <fmt/format.h>
