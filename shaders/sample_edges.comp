@@ -46,8 +46,8 @@ const vec2 kThree[3] = vec2[](vec2(0.281, 0.312), vec2(-0.411, 0.087), vec2(0.13
 void add_ray(FrameConstants constants, ViewConstants view, vec2 point_px, float weight, inout vec3 shown,
              inout uvec3 counts) {
   vec3 direction = view_ray_through(view, point_px, constants.size_px);
-  RayAnswer answer = trace_ray(constants.grid, constants.trace, view.origin_hi_m, view.origin_lo_m, direction,
-                               kStartLevel);
+  RayAnswer answer = trace_ray(constants.grid, constants.trace, pipeline_rules(), view.origin_hi_m,
+                               view.origin_lo_m, direction, kPipelineStartLevel);
   uint reads;
   vec3 radiance = ray_radiance(constants.grid, constants.trace, answer, view.origin_hi_m, view.origin_lo_m, direction,
                                view.pixel_angle_rad, reads);

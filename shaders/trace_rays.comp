@@ -20,8 +20,8 @@ void main() {
   uint index = gl_GlobalInvocationID.x;
   if (index >= batch.ray_count) return;
   BatchRay ray = Rays(batch.rays_address).v[index];
-  RayAnswer answer = trace_ray(batch.grid, batch.trace, ray.origin_hi_m, ray.origin_lo_m, ray.unit_direction,
-                               kStartLevel);
+  RayAnswer answer = trace_ray(batch.grid, batch.trace, pipeline_rules(), ray.origin_hi_m, ray.origin_lo_m,
+                               ray.unit_direction, kPipelineStartLevel);
   BatchAnswer result;
   result.radiance = ray_radiance(batch.grid, batch.trace, answer, ray.origin_hi_m, ray.origin_lo_m,
                                  ray.unit_direction, batch.spread_rad, result.attribute_reads);

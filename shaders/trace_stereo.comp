@@ -40,7 +40,8 @@ void main() {
   GridConstants grid = frame.constants.grid;
   TraceConstants dials = frame.constants.trace;
   vec3 direction = view_ray(view, pixel, size_px);
-  RayAnswer answer = trace_ray(grid, dials, view.origin_hi_m, view.origin_lo_m, direction, kStartLevel);
+  RayAnswer answer = trace_ray(grid, dials, pipeline_rules(), view.origin_hi_m, view.origin_lo_m, direction,
+                               kPipelineStartLevel);
   uint reads;
   vec3 radiance = ray_radiance(grid, dials, answer, view.origin_hi_m, view.origin_lo_m, direction,
                                view.pixel_angle_rad, reads);

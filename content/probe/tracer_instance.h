@@ -6,6 +6,7 @@
 #include <glm/glm.hpp>
 
 #include "shaders/shared/probe_layout.h"
+#include "shaders/shared/selection_rules.h"
 
 #define PW_OUT(type) type&
 #define PW_INOUT(type) type&

@@ -5,8 +5,15 @@
 //   pw_word_real(address, index)        the same as a float, widened to real
 //   pw_probe(grid, index)               a ProbeRecord
 //   PW_OUT(type), PW_INOUT(type)        parameter directions
+// and may provide
+//   PW_WALK(probe, id, x, d, t, level)  another walk of one ray through one probe (shaders/shared/baseline_walks.h)
 // No include guard: C++ includes it once a type.
+#include "selection_rules.h"
 #include "tracer_walk.h"
+
+#ifndef PW_WALK
+#define PW_WALK(probe, id, x, d, t, level) walk_probe(probe, x, d, t, level)
+#endif
 
 // How far ahead of a hand-off the next probe's view is tested, as a fraction of the mean probe spacing.
 #define PW_START_AHEAD real(0.01)
@@ -80,10 +87,27 @@ struct CandidateList {
   real score[PW_CANDIDATES];
 };
 
-// The probes at the corners of the grid cell that holds q (clamped to the grid), by falling score: how well the ray runs
-// away from the probe, less its distance, less how far beyond the cell's middle its corner lies. Probes that are not
-// resident are left out.
-PW_FUNCTION CandidateList cell_candidates(GridConstants grid, TraceConstants dials, real3 q, real3 d) {
+// How promising a probe is for a ray of unit direction d, `away` from it: what is first of a cell has the highest score.
+PW_FUNCTION real candidate_score(GridConstants grid, TraceConstants dials, int first, real3 away, real3 d) {
+  real distance = sqrt(away.x * away.x + away.y * away.y + away.z * away.z) + real(1e-6);
+  real cosine = (away.x * d.x + away.y * d.y + away.z * d.z) / distance;
+  if (first == kFirstNearest) return -distance * real(grid.inverse_diagonal);
+  if (first == kFirstSigned) return cosine;
+  if (first == kFirstUnsigned) return abs(cosine);
+  return cosine - real(dials.distance_weight) * distance * real(grid.inverse_diagonal);
+}
+
+// The corner that is asked k-th when `first` is asked first, by a fixed order.
+PW_FUNCTION int ordered_corner(int order, int first, int k) {
+  if (order == kOrderPlusThree) return (first + 3 * k) & 7;
+  return first ^ ((0x71634250 >> (4 * k)) & 7);
+}
+
+// The probes at the corners of the grid cell that holds q (clamped to the grid), in the order of the rules; by default by
+// falling score: how well the ray runs away from the probe, less its distance, less how far beyond the cell's middle its
+// corner lies. Probes that are not resident are left out.
+PW_FUNCTION CandidateList cell_candidates(GridConstants grid, TraceConstants dials, SelectionRules rules, real3 q,
+                                          real3 d) {
   CandidateList list;
   list.count = 0;
   real3 cell = (q - real3(grid.origin_m)) / real3(grid.spacing_m);
@@ -92,32 +116,48 @@ PW_FUNCTION CandidateList cell_candidates(GridConstants grid, TraceConstants dia
   int cz = min(max(int(floor(min(max(cell.z, real(-1)), real(65536)))), 0), max(0, grid.dims.z - 2));
   real3 part = real3(min(max(cell.x - real(cx), real(0)), real(1)), min(max(cell.y - real(cy), real(0)), real(1)),
                      min(max(cell.z - real(cz), real(0)), real(1)));
-  for (int corner = 0; corner < PW_CANDIDATES; ++corner) {
-    int x = min(cx + (corner & 1), grid.dims.x - 1);
-    int y = min(cy + ((corner >> 1) & 1), grid.dims.y - 1);
-    int z = min(cz + (corner >> 2), grid.dims.z - 1);
-    int id = int(pw_word(grid.table_address, (z * grid.dims.y + y) * grid.dims.x + x));
-    bool wanted = true;
-    for (int k = 0; k < list.count; ++k) wanted = wanted && list.probe[k] != id;
-    if (!wanted) continue;
-    ProbeRecord probe = pw_probe(grid, id);
-    if (probe.n_log2 == 0u) continue;
-    real3 away = q - real3(probe.position_hi_m);
-    real distance = sqrt(away.x * away.x + away.y * away.y + away.z * away.z) + real(1e-6);
-    real cosine = (away.x * d.x + away.y * d.y + away.z * d.z) / distance;
-    real score = cosine - real(dials.distance_weight) * distance * real(grid.inverse_diagonal);
-    real off_x = (corner & 1) != 0 ? real(1) - part.x : part.x, off_y = (corner & 2) != 0 ? real(1) - part.y : part.y;
-    real off_z = (corner & 4) != 0 ? real(1) - part.z : part.z;
-    real off = max(off_x, max(off_y, off_z));
-    score = score - max(off - PW_FADE_FROM, real(0)) * PW_FADE_PER_CELL;
-    int at = list.count;
-    for (; at > 0 && list.score[at - 1] < score; --at) {
-      list.score[at] = list.score[at - 1];
-      list.probe[at] = list.probe[at - 1];
+  int best_corner = 0;
+  real best_score = -PW_NEVER;
+  // Fixed orders start at the best corner, so they are made in a second round.
+  const int rounds = rules.order == kOrderSorted ? 1 : 2;
+  for (int round = 0; round < rounds; ++round) {
+    for (int k = 0; k < PW_CANDIDATES; ++k) {
+      int corner = round == 0 ? k : ordered_corner(rules.order, best_corner, k);
+      int x = min(cx + (corner & 1), grid.dims.x - 1);
+      int y = min(cy + ((corner >> 1) & 1), grid.dims.y - 1);
+      int z = min(cz + (corner >> 2), grid.dims.z - 1);
+      int id = int(pw_word(grid.table_address, (z * grid.dims.y + y) * grid.dims.x + x));
+      bool wanted = true;
+      for (int j = 0; j < list.count; ++j) wanted = wanted && list.probe[j] != id;
+      if (!wanted) continue;
+      ProbeRecord probe = pw_probe(grid, id);
+      if (probe.n_log2 == 0u) continue;
+      if (round == 1) {
+        list.probe[list.count] = id;
+        list.count += 1;
+        continue;
+      }
+      real score = candidate_score(grid, dials, rules.first, q - real3(probe.position_hi_m), d);
+      if (rules.first == kFirstSignedLessDistance) {
+        real off_x = (corner & 1) != 0 ? real(1) - part.x : part.x, off_y = (corner & 2) != 0 ? real(1) - part.y : part.y;
+        real off_z = (corner & 4) != 0 ? real(1) - part.z : part.z;
+        real off = max(off_x, max(off_y, off_z));
+        score = score - max(off - PW_FADE_FROM, real(0)) * PW_FADE_PER_CELL;
+      }
+      if (score > best_score) {
+        best_score = score;
+        best_corner = corner;
+      }
+      if (rules.order != kOrderSorted) continue;
+      int at = list.count;
+      for (; at > 0 && list.score[at - 1] < score; --at) {
+        list.score[at] = list.score[at - 1];
+        list.probe[at] = list.probe[at - 1];
+      }
+      list.score[at] = score;
+      list.probe[at] = id;
+      list.count += 1;
     }
-    list.score[at] = score;
-    list.probe[at] = id;
-    list.count += 1;
   }
   return list;
 }
@@ -126,8 +166,8 @@ PW_FUNCTION CandidateList cell_candidates(GridConstants grid, TraceConstants dia
 // unit direction d. Probes are tried one after the other, each from where the last one's knowledge ended; candidates come
 // from the cell of the current point, then from the cells one and two spacings ahead, then from the origin's; the start
 // test skips those that cannot see the current point (design: fewer-tries, 1).
-PW_FUNCTION RayAnswer trace_ray(GridConstants grid, TraceConstants dials, real3 origin_hi, real3 origin_lo, real3 d,
-                                int start_level) {
+PW_FUNCTION RayAnswer trace_ray(GridConstants grid, TraceConstants dials, SelectionRules rules, real3 origin_hi,
+                                real3 origin_lo, real3 d, int start_level) {
   RayAnswer answer;
   answer.cls = kClassUnknown;
   answer.t = real(0);
@@ -143,18 +183,20 @@ PW_FUNCTION RayAnswer trace_ray(GridConstants grid, TraceConstants dials, real3 
   const int max_tries = min(int(dials.max_tries), PW_TRIES_LIMIT);
   const real ahead = real(grid.spacing_mean_m);
   real t = real(0);
-  int stage = 0;
+  // Stages 0 to 2 look where the ray has got to, and ahead of there; stage 3 at its origin.
+  const int first_stage = rules.advance != 0 ? 0 : 3;
+  int stage = first_stage;
   // Every turn either walks, of which there are max_tries, or moves to the next of four stages.
   while (int(answer.tries) < max_tries && stage < 4) {
     real t_cell = stage == 3 ? real(0) : t + real(stage) * ahead;
-    CandidateList list = cell_candidates(grid, dials, origin_hi + d * t_cell, d);
+    CandidateList list = cell_candidates(grid, dials, rules, origin_hi + d * t_cell, d);
     int chosen = -1, doubtful = -1;
     for (int k = 0; k < list.count && chosen < 0; ++k) {
       int id = list.probe[k];
       bool failed = false;
-      for (int f = 0; f < failures; ++f) failed = failed || (failed_probe[f] == id && failed_t[f] >= t);
+      for (int f = 0; f < failures; ++f) failed = failed || (failed_probe[f] == id && (rules.retry == 0 || failed_t[f] >= t));
       if (failed) continue;
-      if (answer.tries == 0u) {
+      if (answer.tries == 0u || rules.start_test == 0) {
         chosen = id;
         break;
       }
@@ -170,7 +212,8 @@ PW_FUNCTION RayAnswer trace_ray(GridConstants grid, TraceConstants dials, real3 
       continue;
     }
     ProbeRecord probe = pw_probe(grid, chosen);
-    WalkState walk = walk_probe(probe, relative_origin(probe, origin_hi, origin_lo), d, t, start_level);
+    const real t_start = rules.hand_on != 0 ? t : real(0);
+    WalkState walk = PW_WALK(probe, chosen, relative_origin(probe, origin_hi, origin_lo), d, t_start, start_level);
     answer.tries += 1u;
     answer.lookups += walk.lookups;
     if (walk.status == kClassHit || walk.status == kClassMiss) {
@@ -181,15 +224,16 @@ PW_FUNCTION RayAnswer trace_ray(GridConstants grid, TraceConstants dials, real3 
       return answer;
     }
     failed_probe[failures] = chosen;
-    failed_t[failures] = max(walk.t, t);
+    failed_t[failures] = rules.hand_on != 0 ? max(walk.t, t) : PW_NEVER;
     ++failures;
-    if (walk.t_safe > t * real(1.00001) + PW_PROGRESS_M) stage = 0;
+    if (walk.t_safe > t * real(1.00001) + PW_PROGRESS_M) stage = first_stage;
     t = max(t, walk.t_safe);
   }
 
   // Nobody knows: the ray is free up to t. The probe whose surface lies nearest to the stop point lends its radiance.
   answer.t = t;
-  CandidateList list = cell_candidates(grid, dials, origin_hi + d * t, d);
+  if (rules.last_resort == kLastResortNothing) return answer;
+  CandidateList list = cell_candidates(grid, dials, rules, origin_hi + d * t, d);
   real best = PW_NEVER, nearest = PW_NEVER;
   int environment = -1, open = -1;
   for (int k = 0; k < list.count; ++k) {
@@ -210,7 +254,13 @@ PW_FUNCTION RayAnswer trace_ray(GridConstants grid, TraceConstants dials, real3 
       answer.probe = list.probe[k];
     }
   }
-  answer.environment = !(best < PW_PLAUSIBLE);
+  answer.environment = rules.last_resort == kLastResortEnvironment || !(best < PW_PLAUSIBLE);
   if (answer.environment) answer.probe = open >= 0 ? open : environment;
   return answer;
+}
+
+// The same by the product's own rules.
+PW_FUNCTION RayAnswer trace_ray(GridConstants grid, TraceConstants dials, real3 origin_hi, real3 origin_lo, real3 d,
+                                int start_level) {
+  return trace_ray(grid, dials, default_rules(), origin_hi, origin_lo, d, start_level);
 }

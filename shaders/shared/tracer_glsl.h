@@ -5,6 +5,7 @@
 #define PROBEWALK_SHADERS_SHARED_TRACER_GLSL_H
 
 #include "probe_layout.h"
+#include "selection_rules.h"
 
 #define real float
 #define real2 vec2
@@ -22,5 +23,28 @@ ProbeRecord pw_probe(GridConstants grid, int index) { return PwProbes(grid.probe
 
 #include "tracer.h"
 #include "tracer_radiance.h"
+
+// What a pipeline traces with is fixed when it is made (render/tracer_choice.h): pyramid level of the first look, 0 = cell
+// by cell, and the rules of selection. Lower numbers are each shader's own.
+layout(constant_id = 4) const int kPipelineStartLevel = kStartLevel;
+layout(constant_id = 5) const int kRuleFirst = kFirstSignedLessDistance;
+layout(constant_id = 6) const int kRuleOrder = kOrderSorted;
+layout(constant_id = 7) const int kRuleAdvance = 1;
+layout(constant_id = 8) const int kRuleRetry = 1;
+layout(constant_id = 9) const int kRuleStartTest = 1;
+layout(constant_id = 10) const int kRuleHandOn = 1;
+layout(constant_id = 11) const int kRuleLastResort = kLastResortStopPoint;
+
+SelectionRules pipeline_rules() {
+  SelectionRules rules;
+  rules.first = kRuleFirst;
+  rules.order = kRuleOrder;
+  rules.advance = kRuleAdvance;
+  rules.retry = kRuleRetry;
+  rules.start_test = kRuleStartTest;
+  rules.hand_on = kRuleHandOn;
+  rules.last_resort = kRuleLastResort;
+  return rules;
+}
 
 #endif
