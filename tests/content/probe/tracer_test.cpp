@@ -141,8 +141,8 @@ TEST_P(TracerOnRoom, SkippingNodesChangesNoBit) {
       const ProbeRay ray = hard.ray(random);
       const float t_start = k % 3 == 0 ? static_cast<float>(random(0, 2)) : 0.0f;
       const f32::WalkState flat = f32::walk_probe(probe.record, ray.x, ray.d, t_start, 0);
-      for (int level : {2, kStartLevel, 6}) {
-        const f32::WalkState pyramid = f32::walk_probe(probe.record, ray.x, ray.d, t_start, level);
+      for (int level : {1, 3, kStartLevel}) {
+        const f32::WalkState pyramid = f32::walk_probe(probe.record, ray.x, ray.d, t_start, level + PW_WITHOUT_PLANES);
         ASSERT_EQ(pyramid.status, flat.status) << hard.name << " ray " << k << " level " << level;
         ASSERT_EQ(pyramid.t, flat.t) << hard.name << " ray " << k << " level " << level;
         ASSERT_EQ(pyramid.t_safe, flat.t_safe) << hard.name << " ray " << k << " level " << level;
@@ -174,8 +174,8 @@ TEST(Tracer, EndsWithFiniteNumbersOnAnyBits) {
     DeviceProbe device = build_device_probe(map);
     if (round % 2 == 1) {
       // Worse than any map: samples and pyramid of arbitrary bits, NaN and infinity among them.
-      const std::size_t floats = 17 * 17 + (16 * 16 - 4) / 3;
-      for (std::size_t k = 0; k < floats; ++k) device.geometry[k] = static_cast<std::uint32_t>(random(0, 4294967296.0));
+      const int words = f32::pyramid_begin(n) + f32::pyramid_words(4);
+      for (std::size_t k = 0; k < static_cast<std::size_t>(words); ++k) device.geometry[k] = static_cast<std::uint32_t>(random(0, 4294967296.0));
     }
     const ProbeRecord record = record_in_memory(device);
     for (int k = 0; k < 2000; ++k) {
