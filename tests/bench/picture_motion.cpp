@@ -100,7 +100,8 @@ ImageRgbF averaged(const ImageRgbF& fine, int side, float exposure) {
 
 // The triangles' pictures of all frames, as displayed: read from `file`, or cast and written there.
 std::vector<ImageRgb8> expected_pictures(const Arguments& a, const Manifest& manifest, Progress& progress) {
-  const fs::path file = a.dir / fmt::format("expected-{}x{}x{}x{}.rgb", a.frames, a.extent.width, a.extent.height, a.side);
+  const fs::path file =
+      a.dir / fmt::format("expected-{}x{}x{}x{}.rgb", a.frames, a.extent.width, a.extent.height, a.side);
   const ImageRgb8 empty{static_cast<int>(a.extent.width), static_cast<int>(a.extent.height),
                         std::vector<std::uint8_t>(3 * std::size_t{a.extent.width} * a.extent.height)};
   std::vector<ImageRgb8> pictures(2 * static_cast<std::size_t>(a.frames), empty);
