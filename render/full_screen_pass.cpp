@@ -27,7 +27,8 @@ void FullScreenPass::record(VkCommandBuffer commands, VkDeviceAddress frame, VkE
   } else {
     rendering.pDepthAttachment = &attachment;
   }
-  const VkViewport viewport{0.0f, 0.0f, static_cast<float>(extent.width), static_cast<float>(extent.height), 0.0f, 1.0f};
+  const VkViewport viewport{
+      0.0f, 0.0f, static_cast<float>(extent.width), static_cast<float>(extent.height), 0.0f, 1.0f};
   vkCmdSetViewport(commands, 0, 1, &viewport);
   vkCmdSetScissor(commands, 0, 1, &rendering.renderArea);
   for (std::uint32_t layer = 0; layer < layers_; ++layer) {

@@ -1,5 +1,6 @@
 // What the resolve and the depth pass share: an image's layers drawn to those of an attachment, one draw a layer.
-// Multiview gains nothing for one triangle, and llvmpipe of Mesa 25.0 crashes on it where the device is otherwise sound.
+// Multiview gains nothing for one triangle, and llvmpipe of Mesa 25.0 crashes on it where the device is otherwise
+// sound.
 #pragma once
 
 #include <volk.h>
@@ -15,8 +16,8 @@ namespace probewalk {
 
 class FullScreenPass {
  public:
-  // The fragment shader reads `source`, which outlives this, as storage image 0. `format` is the attachment's: of colour,
-  // or of depth without stencil.
+  // The fragment shader reads `source`, which outlives this, as storage image 0. `format` is the attachment's: of
+  // colour, or of depth without stencil.
   FullScreenPass(const Device& device, const Image& source, std::span<const std::uint32_t> fragment_spirv,
                  VkFormat format);
 
