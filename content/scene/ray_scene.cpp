@@ -33,7 +33,8 @@ bool processor_has(std::string_view isa) {
 std::string device_config(const std::string& isa) {
   if (isa.empty()) return "";
   if (std::find(kInstructionSets.begin(), kInstructionSets.end(), isa) == kInstructionSets.end()) {
-    throw BadUsage(fmt::format("instruction set '{}' is unknown; known are {}", isa, fmt::join(kInstructionSets, ", ")));
+    throw BadUsage(
+        fmt::format("instruction set '{}' is unknown; known are {}", isa, fmt::join(kInstructionSets, ", ")));
   }
   if (!processor_has(isa)) {
     throw BadUsage(fmt::format("this processor has no instruction set '{}'; choose a lesser one of {}", isa,

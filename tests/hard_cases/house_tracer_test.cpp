@@ -1,5 +1,6 @@
-// The tracer in the sample house, 10^5 rays at N = 128: device (GLSL), C++ float, C++ double and brute force in double
-// (cuts included) side by side. Prints the table of disagreements by class and says what each of them is.
+// The tracer in the sample house, 10^5 rays at N = 128 (10^4 under a sanitizer): device (GLSL), C++ float, C++ double
+// and brute force in double (cuts included) side by side. Prints the table of disagreements by class and says what each
+// of them is.
 #include <gtest/gtest.h>
 #include <tbb/parallel_for.h>
 
@@ -28,13 +29,15 @@
 namespace probewalk {
 namespace {
 
-constexpr int kRays = 100000;
+// A sanitizer looks at the code's ways, not at the figures, and takes ten times as long for each ray.
+constexpr int kRays = PROBEWALK_SANITIZED ? 10000 : 100000;
 constexpr int kCells = 128;
 
 Scene load_house() {
   const std::filesystem::path file = std::filesystem::path(PROBEWALK_TEST_OUTPUT_DIR) / "hard_cases_house.glb";
   const std::vector<std::byte> bytes = make_procedural_glb("house");
-  std::ofstream(file, std::ios::binary).write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  std::ofstream(file, std::ios::binary)
+      .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
   return load_scene(file);
 }
 
@@ -58,7 +61,8 @@ class Table {
   void print(int rays) const {
     std::printf("%s, %d rays:%s\n", title_.c_str(), rays, rows_.empty() ? " no disagreement" : "");
     for (const auto& [what, counts] : rows_) {
-      std::printf("  %-34s %6d  of which the answer jumps within 2e-6 of the ray (ties): %d\n", what.c_str(), counts.first, counts.second);
+      std::printf("  %-34s %6d  of which the answer jumps within 2e-6 of the ray (ties): %d\n", what.c_str(),
+                  counts.first, counts.second);
     }
   }
   int unexplained() const { return unexplained_; }
@@ -101,14 +105,16 @@ TEST(HouseTracer, AllCompilationsAndBruteForceAgree) {
     batch.push_back({head, glm::dvec3(glm::vec3(random.direction()))});
   }
 
-  // Both share the records' slopes, which are 16-bit codes (1.5e-6 of w): a jump closer than that is a tie in double too.
+  // Both share the records' slopes, which are 16-bit codes (1.5e-6 of w): a jump closer than that is a tie in double
+  // too.
   // 1. One walk each, against brute force over every piece of the probe's surface.
   std::vector<int> cls32(kRays), cls64(kRays);
   std::vector<BruteAnswer> brute_answers(kRays);
   std::vector<double> t32(kRays), t64(kRays);
   std::vector<char> tie32(kRays), tie64(kRays);
   std::vector<std::unique_ptr<BruteForceProbe>> brutes(geometry.size());
-  tbb::parallel_for(std::size_t{0}, geometry.size(), [&](std::size_t p) { brutes[p] = std::make_unique<BruteForceProbe>(geometry[p]); });
+  tbb::parallel_for(std::size_t{0}, geometry.size(),
+                    [&](std::size_t p) { brutes[p] = std::make_unique<BruteForceProbe>(geometry[p]); });
   const auto split_direction = [](const WorldRay& ray) { return glm::vec3(glm::normalize(ray.direction)); };
   tbb::parallel_for(0, kRays, [&](int k) {
     glm::vec3 hi, lo;
@@ -126,22 +132,26 @@ TEST(HouseTracer, AllCompilationsAndBruteForceAgree) {
     t64[k] = b.t;
     const BruteForceProbe& brute = *brutes[static_cast<std::size_t>(p)];
     brute_answers[k] = brute.trace(glm::dvec3(x), glm::dvec3(d));
-    if (!test::same_answer(cls32[k], t32[k], brute_answers[k])) tie32[k] = test::is_tie(brute, glm::dvec3(x), glm::dvec3(d), 0.0, cls32[k], t32[k], 2e-6);
-    if (!test::same_answer(cls64[k], t64[k], brute_answers[k])) tie64[k] = test::is_tie(brute, glm::dvec3(x), glm::dvec3(d), 0.0, cls64[k], t64[k], 2e-6);
+    if (!test::same_answer(cls32[k], t32[k], brute_answers[k]))
+      tie32[k] = test::is_tie(brute, glm::dvec3(x), glm::dvec3(d), 0.0, cls32[k], t32[k], 2e-6);
+    if (!test::same_answer(cls64[k], t64[k], brute_answers[k]))
+      tie64[k] = test::is_tie(brute, glm::dvec3(x), glm::dvec3(d), 0.0, cls64[k], t64[k], 2e-6);
   });
-  Table single("one walk, C++ float against brute force in double"), twice("one walk, C++ double against brute force in double");
+  Table single("one walk, C++ float against brute force in double"),
+      twice("one walk, C++ double against brute force in double");
   std::vector<double> errors;
   for (int k = 0; k < kRays; ++k) {
     const std::string to = std::string(" -> ") + name_of(brute_answers[k].cls);
     if (!test::same_answer(cls32[k], t32[k], brute_answers[k])) single.add(name_of(cls32[k]) + to, tie32[k]);
     if (!test::same_answer(cls64[k], t64[k], brute_answers[k])) twice.add(name_of(cls64[k]) + to, tie64[k]);
-    if (cls32[k] == kClassHit && brute_answers[k].cls == BruteAnswer::Class::kHit) errors.push_back(std::abs(t32[k] - brute_answers[k].t) / brute_answers[k].t);
+    if (cls32[k] == kClassHit && brute_answers[k].cls == BruteAnswer::Class::kHit)
+      errors.push_back(std::abs(t32[k] - brute_answers[k].t) / brute_answers[k].t);
   }
   single.print(kRays);
   twice.print(kRays);
   std::sort(errors.begin(), errors.end());
-  std::printf("  distance, float against brute force: median %.2g, p99 %.2g, max %.2g relative\n", errors[errors.size() / 2],
-              errors[errors.size() * 99 / 100], errors.back());
+  std::printf("  distance, float against brute force: median %.2g, p99 %.2g, max %.2g relative\n",
+              errors[errors.size() / 2], errors[errors.size() * 99 / 100], errors.back());
 
   // 2. Whole answers, hand-offs included: device against C++ float (the same arithmetic), float against double.
   const Device device({}, {});
@@ -179,14 +189,17 @@ TEST(HouseTracer, AllCompilationsAndBruteForceAgree) {
       }
       return false;
     };
-    if (differs(g.answer, g.t_m, a.cls, a.t)) glsl.add(std::string(name_of(g.answer)) + " -> " + name_of(a.cls), jumps(g.answer, g.t_m));
-    if (differs(a.cls, a.t, b.cls, b.t)) precision.add(std::string(name_of(a.cls)) + " -> " + name_of(b.cls), jumps(a.cls, a.t));
+    if (differs(g.answer, g.t_m, a.cls, a.t))
+      glsl.add(std::string(name_of(g.answer)) + " -> " + name_of(a.cls), jumps(g.answer, g.t_m));
+    if (differs(a.cls, a.t, b.cls, b.t))
+      precision.add(std::string(name_of(a.cls)) + " -> " + name_of(b.cls), jumps(a.cls, a.t));
   }
   std::sort(lookup_counts.begin(), lookup_counts.end());
   glsl.print(kRays);
   std::printf("  bit-identical (class, distance, probe): %d of %d\n", bits, kRays);
   precision.print(kRays);
-  std::printf("look-ups per ray: mean %.1f, p99 %.0f; unresolved: %.2f %%\n", lookups / kRays, lookup_counts[kRays * 99 / 100], 100.0 * unknown / kRays);
+  std::printf("look-ups per ray: mean %.1f, p99 %.0f; unresolved: %.2f %%\n", lookups / kRays,
+              lookup_counts[kRays * 99 / 100], 100.0 * unknown / kRays);
 
   EXPECT_EQ(single.unexplained(), 0);
   EXPECT_EQ(twice.unexplained(), 0);
