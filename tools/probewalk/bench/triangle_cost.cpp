@@ -1,6 +1,7 @@
 #include "tools/probewalk/bench/triangle_cost.h"
 
 #include <fmt/format.h>
+#include <time.h>
 
 #include <algorithm>
 #include <array>
@@ -64,10 +65,17 @@ struct Contender {
   std::string name;
   std::function<std::int64_t(std::span<float>)> run;  // fills distances, returns ns
   double setup_s = 0.0, setup_mib = 0.0;
-  std::vector<double> ns;  // by repeat
-  std::vector<float> t_m;  // of the last run
+  std::vector<double> ns{}, cpu_ns{};  // by repeat
+  std::vector<float> t_m{};            // of the last run
   double lookups_mean = 0.0;
 };
+
+// Processor time of this process, all threads together.
+double cpu_now_ns() {
+  timespec now{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return 1e9 * static_cast<double>(now.tv_sec) + static_cast<double>(now.tv_nsec);
+}
 
 // One room with everything that its contenders need.
 class Room {
@@ -103,7 +111,7 @@ class Room {
     // Times do not depend on what colour a probe shows: as little light as a bake takes.
     bake_options.light.samples = 16;
     bake_options.light.bounces = 1;
-    Contender oat{"oat", {}, 0.0, 0.0, {}, {}, 0.0};
+    Contender oat{.name = "oat", .run = {}};
     if (!std::filesystem::exists(bake_options.pack)) oat.setup_s = bake(bake_options, progress).seconds;
     const Pack pack = Pack::open(bake_options.pack);
     const ProbeSet probes = ProbeSet::read(pack);
@@ -135,26 +143,17 @@ class Room {
     if (has_ray_query(device)) {
       progress.note(fmt::format("{}: building the device's acceleration structure", name_));
       query_ = std::make_unique<TriangleQuery>(device, scene_);
-      contenders_.push_back({"ray-query",
-                             [this](std::span<float> t_m) { return query_->trace(rays_, t_m); },
+      contenders_.push_back({"ray-query", [this](std::span<float> t_m) { return query_->trace(rays_, t_m); },
                              1e-9 * static_cast<double>(query_->build_ns()),
-                             static_cast<double>(query_->structure_bytes()) / 1048576.0,
-                             {},
-                             {},
-                             0.0});
+                             static_cast<double>(query_->structure_bytes()) / 1048576.0});
     }
     progress.note(fmt::format("{}: building Embree's hierarchy", name_));
     embree_ = std::make_unique<EmbreeQuery>(scene_);
     for (const auto& [name, width] :
          {std::pair{"embree-1", RayWidth::kOne}, std::pair{"embree-16", RayWidth::kSixteen}}) {
       contenders_.push_back(
-          {name,
-           [this, width](std::span<float> t_m) { return embree_->trace(width, rays_, t_m); },
-           1e-9 * static_cast<double>(embree_->build_ns()),
-           0.0,
-           {},
-           {},
-           0.0});
+          {name, [this, width](std::span<float> t_m) { return embree_->trace(width, rays_, t_m); },
+           1e-9 * static_cast<double>(embree_->build_ns()), 0.0});
     }
   }
 
@@ -178,6 +177,13 @@ double quantile(std::vector<double> values, double q) {
   return values[below] + (place - static_cast<double>(below)) * (values[above] - values[below]);
 }
 
+// Of the quotients repeat by repeat.
+double median_ratio(const std::vector<double>& values, const std::vector<double>& to) {
+  std::vector<double> ratios;
+  for (std::size_t r = 0; r < values.size(); ++r) ratios.push_back(values[r] / to[r]);
+  return quantile(ratios, 0.5);
+}
+
 double agreement(const std::vector<float>& t_m, const std::vector<float>& expected_m) {
   std::size_t same = 0;
   for (std::size_t i = 0; i < t_m.size(); ++i)
@@ -193,13 +199,19 @@ std::vector<TriangleCostRow> rows_of(std::vector<std::unique_ptr<Room>>& rooms, 
     const auto truth =
         std::find_if(all.begin(), all.end(), [](const Contender& c) { return c.name == "embree-1"; });
     for (std::size_t i = 0; i < all.size(); ++i) {
-      std::vector<double> ratios;
-      for (std::size_t r = 0; r < all[i].ns.size(); ++r) ratios.push_back(all[i].ns[r] / smallest[i].ns[r]);
       const double per_ray = 1.0 / static_cast<double>(rays);
-      rows.push_back({room->name(), all[i].name, room->triangles(), rays, quantile(all[i].ns, 0.5) * per_ray,
-                      (quantile(all[i].ns, 0.75) - quantile(all[i].ns, 0.25)) * per_ray,
-                      quantile(ratios, 0.5), all[i].lookups_mean, agreement(all[i].t_m, truth->t_m),
-                      all[i].setup_s, all[i].setup_mib});
+      TriangleCostRow row;
+      row.room = room->name(), row.contender = all[i].name;
+      row.triangles = room->triangles(), row.rays = rays;
+      row.ns_per_ray_median = quantile(all[i].ns, 0.5) * per_ray;
+      row.ns_per_ray_spread = (quantile(all[i].ns, 0.75) - quantile(all[i].ns, 0.25)) * per_ray;
+      row.ratio_to_smallest = median_ratio(all[i].ns, smallest[i].ns);
+      row.cpu_ns_per_ray_median = quantile(all[i].cpu_ns, 0.5) * per_ray;
+      row.cpu_ratio_to_smallest = median_ratio(all[i].cpu_ns, smallest[i].cpu_ns);
+      row.lookups_mean = all[i].lookups_mean;
+      row.agreement_fraction = agreement(all[i].t_m, truth->t_m);
+      row.setup_s = all[i].setup_s, row.setup_mib = all[i].setup_mib;
+      rows.push_back(row);
     }
   }
   return rows;
@@ -228,8 +240,13 @@ std::vector<TriangleCostRow> measure_triangle_cost(const Device& device, const T
     for (const std::unique_ptr<Room>& room : rooms) {
       for (Contender& contender : room->contenders()) {
         contender.t_m.resize(rays.size());
+        const double cpu_begin_ns = cpu_now_ns();
         const std::int64_t ns = contender.run(contender.t_m);
-        if (repeat >= 0) contender.ns.push_back(static_cast<double>(ns));
+        const double cpu_ns = cpu_now_ns() - cpu_begin_ns;
+        if (repeat >= 0) {
+          contender.ns.push_back(static_cast<double>(ns));
+          contender.cpu_ns.push_back(cpu_ns);
+        }
         if (progress.cancelled()) throw Interrupted("interrupted; the rooms and packs made so far are kept");
       }
       if (repeat >= 0) progress.advance(1);

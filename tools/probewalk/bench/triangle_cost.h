@@ -28,8 +28,12 @@ struct TriangleCostRow {
   double ns_per_ray_median = 0.0;
   double ns_per_ray_spread = 0.0;  // distance between the quartiles
   double ratio_to_smallest =
-      1.0;                    // median over repeats of the time beside the same contender's in the first room
-  double lookups_mean = 0.0;  // oat only, else 0
+      1.0;  // median over repeats of the time beside the same contender's in the first room
+  // Both again by the process's own processor time, all threads together, which does not count what others
+  // run on the machine: of meaning where the device is the processor. For oat and ray-query it includes
+  // copying in and out.
+  double cpu_ns_per_ray_median = 0.0, cpu_ratio_to_smallest = 1.0;
+  double lookups_mean = 0.0;        // oat only, else 0
   double agreement_fraction = 0.0;  // of rays whose distance is within 2 % of embree-1's
   double setup_s = 0.0;             // building the hierarchy, or baking (0 where the pack was there)
   double setup_mib = 0.0;           // of the device's structures; 0 = not known
