@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <chrono>
 #include <cstring>
 
 #include "content/probe/device_probe.h"
@@ -30,6 +31,14 @@ RayBatch::RayBatch(const Device& device)
 
 std::vector<BatchAnswer> RayBatch::trace(const ProbeStore& store, const TraceConstants& dials,
                                          std::span<const WorldRay> rays, float spread_rad) const {
+  std::int64_t ignored_ns = 0;
+  return trace(store, dials, rays, spread_rad, ignored_ns);
+}
+
+std::vector<BatchAnswer> RayBatch::trace(const ProbeStore& store, const TraceConstants& dials,
+                                         std::span<const WorldRay> rays, float spread_rad,
+                                         std::int64_t& dispatches_ns) const {
+  dispatches_ns = 0;
   std::vector<BatchAnswer> answers;
   if (rays.empty()) return answers;
   answers.reserve(rays.size());
@@ -50,11 +59,13 @@ std::vector<BatchAnswer> RayBatch::trace(const ProbeStore& store, const TraceCon
     batch.spread_rad = spread_rad;
     std::memcpy(constants.mapped(), &batch, sizeof(batch));
     constants.flush();
+    const auto begin = std::chrono::steady_clock::now();
     run_commands(device_, [&](VkCommandBuffer commands) {
       pipeline_.bind(commands, nullptr, {constants.address()});
       vkCmdDispatch(commands, (batch.ray_count + kGroup - 1) / kGroup, 1, 1);
       make_visible_to_cpu(commands);
     });
+    dispatches_ns += (std::chrono::steady_clock::now() - begin) / std::chrono::nanoseconds(1);
     answer_buffer.invalidate();
     const auto done = answer_buffer.mapped_as<BatchAnswer>();
     answers.insert(answers.end(), done.begin(), done.begin() + static_cast<std::ptrdiff_t>(part.size()));

@@ -25,6 +25,9 @@ class RayBatch {
   // Blocks until all rays are answered, in their order, against what slot 0 of the store shows (see settle). `spread_rad` is each ray's angular width, for filtering.
   std::vector<BatchAnswer> trace(const ProbeStore& store, const TraceConstants& dials, std::span<const WorldRay> rays,
                                  float spread_rad) const;
+  // The same, and how long the dispatches took in ns, from submission to fence: copying in and out is not in it.
+  std::vector<BatchAnswer> trace(const ProbeStore& store, const TraceConstants& dials, std::span<const WorldRay> rays,
+                                 float spread_rad, std::int64_t& dispatches_ns) const;
 
  private:
   const Device& device_;
