@@ -6,13 +6,19 @@
 // triangle of the world, and the walk needs one compare a node, no step size and no thickness (design: tracer, 2).
 //
 // What the walk guarantees on any data: it ends (every step moves on by at least one cell), it forms no NaN and no
-// infinity from finite rays, and with the pyramid it visits the same surfaces as without, bit for bit.
+// infinity from finite rays and says "unknown" to others, and with the pyramid it visits the same surfaces as without,
+// bit for bit.
 
 // Stands for "never" in ray parameters; finite, so that no proof rests on the device's infinities.
 #define PW_NEVER real(1e30)
 // Status of a walk beside the answers of probe_layout.h.
 #define PW_WALKING (-1)
 #define PW_CLASS_BEHIND 3  // the ray's start lies behind the probe's surface
+// Sizes of what can be walked: origins up to here from the probe, directions no longer and no shorter than these. Beyond
+// them sums and reciprocals might not be finite.
+#define PW_GREATEST_M real(1e15)
+#define PW_LONGEST real(1e6)
+#define PW_SHORTEST real(1e-6)
 
 // A piece of the ray inside one octant, in quadrant-local map coordinates [0, half]^2; everything is linear in lambda.
 struct OctantSegment {
@@ -421,6 +427,15 @@ PW_FUNCTION WalkState walk_probe(ProbeRecord probe, real3 x, real3 d, real t_sta
   state.plane_at = real2(0, 0);
   const real half_n = real(1 << int(probe.n_log2 - 1u));
   const real l_min = real(probe.l_min_m);
+  // Of a ray whose numbers are none nothing is known; the comparisons fail for NaN, too.
+  bool has_start = abs(t_start) < PW_NEVER;
+  real size = abs(x.x) + abs(x.y) + abs(x.z), speed = abs(d.x) + abs(d.y) + abs(d.z);
+  if (!(has_start && size < PW_GREATEST_M && speed < PW_LONGEST && speed > PW_SHORTEST)) {
+    state.status = kClassUnknown;
+    state.t = has_start ? t_start : real(0);
+    state.t_safe = state.t;
+    return state;
+  }
 
   real3 t_cross, s;
   real t_axis;
