@@ -9,6 +9,7 @@ namespace probewalk::spirv {
 extern const std::span<const std::uint32_t> k_trace_stereo_comp;
 extern const std::span<const std::uint32_t> k_trace_rays_comp;
 extern const std::span<const std::uint32_t> k_trace_triangles_comp;
+extern const std::span<const std::uint32_t> k_walk_rays_comp;
 extern const std::span<const std::uint32_t> k_find_edges_comp;
 extern const std::span<const std::uint32_t> k_sample_edges_comp;
 extern const std::span<const std::uint32_t> k_resolve_vert;

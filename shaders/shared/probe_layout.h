@@ -39,6 +39,9 @@ PW_CONSTANT float kSlopeStep = 1.52592547e-6f;
 PW_CONSTANT float kCutExtension = 1.1001f;
 // Highest level of the pyramid that a walk looks at (odd).
 PW_CONSTANT int kStartLevel = 5;
+// Added to a walk's level: planar entries are gone through cell by cell all the same, which gives the very bits of a walk
+// without a pyramid.
+PW_CONSTANT int kWithoutPlanes = 16;
 PW_CONSTANT int kCutRecordWords = 8;
 // Relative to w. Beyond what floats hold of it, so that walls are planar; a distance changes by as much or, where the ray
 // grazes the surface, by what rounding does to it anyway.

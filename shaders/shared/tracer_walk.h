@@ -6,20 +6,23 @@
 // triangle of the world, and the walk needs one compare a node, no step size and no thickness (design: tracer, 2).
 //
 // What the walk guarantees on any data: it ends (every step moves on by at least one cell), it forms no NaN and no
-// infinity from finite rays, and with the pyramid it visits the same surfaces as without, bit for bit; with its planes,
-// too, within the tolerance that makes them planes.
+// infinity from finite rays and says "unknown" to others, and with the pyramid it visits the same surfaces as without,
+// bit for bit; with its planes, too, within the tolerance that makes them planes.
 
 // Stands for "never" in ray parameters; finite, so that no proof rests on the device's infinities.
 #define PW_NEVER real(1e30)
 // Status of a walk beside the answers of probe_layout.h.
 #define PW_WALKING (-1)
 #define PW_CLASS_BEHIND 3  // the ray's start lies behind the probe's surface
-// Added to a walk's level: entries that are planar are gone through cell by cell all the same.
-#define PW_WITHOUT_PLANES 16
 // The first look is at entries at most this many times as wide as the way through the octant.
 #ifndef PW_FIRST_LOOK
 #define PW_FIRST_LOOK real(1)
 #endif
+// Sizes of what can be walked: origins up to here from the probe, directions no longer and no shorter than these. Beyond
+// them sums and reciprocals might not be finite.
+#define PW_GREATEST_M real(1e15)
+#define PW_LONGEST real(1e6)
+#define PW_SHORTEST real(1e-6)
 
 // A piece of the ray inside one octant, in quadrant-local map coordinates [0, half]^2; everything is linear in lambda.
 struct OctantSegment {
@@ -275,11 +278,13 @@ PW_FUNCTION bool walk_segment(ProbeRecord probe, OctantSegment s, real t_start, 
   iy = min(max(iy, 0), half_n - 1);
 
   // Levels 0 (cells), 1, 3, 5 ... The first look is as wide as the way is long, at most.
-  const bool planes = start_level < PW_WITHOUT_PLANES;
-  int top = min(planes ? start_level : start_level - PW_WITHOUT_PLANES, pyramid_top(int(probe.n_log2)));
+  const bool planes = start_level < kWithoutPlanes;
+  int top = min(planes ? start_level : start_level - kWithoutPlanes, pyramid_top(int(probe.n_log2)));
   top = top < 1 ? 0 : ((top - 1) | 1);
   const real way = max(abs(s.d_uv.x), abs(s.d_uv.y));
   while (top > 1 && real(1 << top) > way * PW_FIRST_LOOK) top -= 2;
+  // A segment that moves by less than a cell, a ray's that runs (almost) straight away from the probe, meets three cells
+  // at most, mostly one: looking at nodes first would only add to that (thesis 4.3: one look-up).
   if (way < real(1)) top = 0;
 
   int level = top, node_read = -1;
@@ -463,7 +468,8 @@ PW_FUNCTION real octant_sign(bool crosses, real t, real t_start, real x, real d)
 }
 
 // Walks the ray x + t d, t >= t_start, through the probe's map. x: origin relative to the probe. start_level: pyramid
-// level of the first look, 0 = cell by cell, + PW_WITHOUT_PLANES for the very answers of cell by cell. Signs come from comparing crossing times, never from evaluating points.
+// level of the first look, 0 = cell by cell, + kWithoutPlanes for the very answers of cell by cell. Signs come from
+// comparing crossing times, never from evaluating points.
 PW_FUNCTION WalkState walk_probe(ProbeRecord probe, real3 x, real3 d, real t_start, int start_level) {
   WalkState state;
   state.status = PW_WALKING;
@@ -475,6 +481,15 @@ PW_FUNCTION WalkState walk_probe(ProbeRecord probe, real3 x, real3 d, real t_sta
   state.plane_at = real2(0, 0);
   const real half_n = real(1 << int(probe.n_log2 - 1u));
   const real l_min = real(probe.l_min_m);
+  // Of a ray whose numbers are none nothing is known; the comparisons fail for NaN, too.
+  bool has_start = abs(t_start) < PW_NEVER;
+  real size = abs(x.x) + abs(x.y) + abs(x.z), speed = abs(d.x) + abs(d.y) + abs(d.z);
+  if (!(has_start && size < PW_GREATEST_M && speed < PW_LONGEST && speed > PW_SHORTEST)) {
+    state.status = kClassUnknown;
+    state.t = has_start ? t_start : real(0);
+    state.t_safe = state.t;
+    return state;
+  }
 
   real3 t_cross, s;
   real t_axis;

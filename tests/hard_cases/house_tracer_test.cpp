@@ -1,6 +1,5 @@
-// The tracer in the sample house, 10^5 rays at N = 128 (10^4 under a sanitizer): device (GLSL), C++ float, C++ double
-// and brute force in double (cuts included) side by side. Prints the table of disagreements by class and says what each
-// of them is.
+// The tracer in the sample house, 10^5 rays at N = 128: device (GLSL), C++ float, C++ double and brute force in double
+// (cuts included) side by side. Prints the table of disagreements by class and says what each of them is.
 #include <gtest/gtest.h>
 #include <tbb/parallel_for.h>
 
@@ -22,8 +21,9 @@
 #include "content/probe/tracer_f64.h"
 #include "content/scene/procedural/procedural.h"
 #include "content/scene/space.h"
+#include "content/stability/agreement.h"
+#include "content/stability/walk.h"
 #include "render/ray_batch.h"
-#include "support/brute_compare.h"
 #include "support/low_discrepancy.h"
 
 namespace probewalk {
@@ -36,17 +36,12 @@ constexpr int kCells = 128;
 Scene load_house() {
   const std::filesystem::path file = std::filesystem::path(PROBEWALK_TEST_OUTPUT_DIR) / "hard_cases_house.glb";
   const std::vector<std::byte> bytes = make_procedural_glb("house");
-  std::ofstream(file, std::ios::binary)
-      .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  std::ofstream(file, std::ios::binary).write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
   return load_scene(file);
 }
 
-const char* name_of(int cls) {
-  static constexpr const char* kNames[] = {"hit", "miss", "unknown", "behind"};
-  return kNames[cls];
-}
-
-const char* name_of(BruteAnswer::Class cls) { return name_of(static_cast<int>(cls)); }
+using stability::Answer;
+using stability::class_name;
 
 // Counts differences by "this -> that" and how many of them are ties.
 class Table {
@@ -61,8 +56,7 @@ class Table {
   void print(int rays) const {
     std::printf("%s, %d rays:%s\n", title_.c_str(), rays, rows_.empty() ? " no disagreement" : "");
     for (const auto& [what, counts] : rows_) {
-      std::printf("  %-34s %6d  of which the answer jumps within 2e-6 of the ray (ties): %d\n", what.c_str(),
-                  counts.first, counts.second);
+      std::printf("  %-34s %6d  of which the answer jumps within 2e-6 of the ray (ties): %d\n", what.c_str(), counts.first, counts.second);
     }
   }
   int unexplained() const { return unexplained_; }
@@ -105,16 +99,12 @@ TEST(HouseTracer, AllCompilationsAndBruteForceAgree) {
     batch.push_back({head, glm::dvec3(glm::vec3(random.direction()))});
   }
 
-  // Both share the records' slopes, which are 16-bit codes (1.5e-6 of w): a jump closer than that is a tie in double
-  // too.
+  // Both share the records' slopes, which are 16-bit codes (1.5e-6 of w): a jump closer than that is a tie in double too.
   // 1. One walk each, against brute force over every piece of the probe's surface.
-  std::vector<int> cls32(kRays), cls64(kRays);
-  std::vector<BruteAnswer> brute_answers(kRays);
-  std::vector<double> t32(kRays), t64(kRays);
+  std::vector<Answer> singles(kRays), twices(kRays), truths(kRays);
   std::vector<char> tie32(kRays), tie64(kRays);
   std::vector<std::unique_ptr<BruteForceProbe>> brutes(geometry.size());
-  tbb::parallel_for(std::size_t{0}, geometry.size(),
-                    [&](std::size_t p) { brutes[p] = std::make_unique<BruteForceProbe>(geometry[p]); });
+  tbb::parallel_for(std::size_t{0}, geometry.size(), [&](std::size_t p) { brutes[p] = std::make_unique<BruteForceProbe>(geometry[p]); });
   const auto split_direction = [](const WorldRay& ray) { return glm::vec3(glm::normalize(ray.direction)); };
   tbb::parallel_for(0, kRays, [&](int k) {
     glm::vec3 hi, lo;
@@ -125,33 +115,34 @@ TEST(HouseTracer, AllCompilationsAndBruteForceAgree) {
     const ProbeRecord& record = set.records()[static_cast<std::size_t>(p)];
     const glm::vec3 x = f32::relative_origin(record, hi, lo);
     const f32::WalkState a = f32::walk_probe(record, x, d, 0.0f, kStartLevel);
-    const f64::WalkState b = f64::walk_probe(record, glm::dvec3(x), glm::dvec3(d), 0.0, kStartLevel);
-    cls32[k] = a.status;
-    t32[k] = a.t;
-    cls64[k] = b.status;
-    t64[k] = b.t;
-    const BruteForceProbe& brute = *brutes[static_cast<std::size_t>(p)];
-    brute_answers[k] = brute.trace(glm::dvec3(x), glm::dvec3(d));
-    if (!test::same_answer(cls32[k], t32[k], brute_answers[k]))
-      tie32[k] = test::is_tie(brute, glm::dvec3(x), glm::dvec3(d), 0.0, cls32[k], t32[k], 2e-6);
-    if (!test::same_answer(cls64[k], t64[k], brute_answers[k]))
-      tie64[k] = test::is_tie(brute, glm::dvec3(x), glm::dvec3(d), 0.0, cls64[k], t64[k], 2e-6);
+    singles[k] = {a.status, a.t, a.t_safe, glm::dvec3(a.plane), a.lookups};
+    twices[k] = stability::walk_in_double(record, glm::dvec3(x), glm::dvec3(d), 0.0, kStartLevel);
+    const stability::Reference by_force = [&](glm::dvec3 at, glm::dvec3 towards) {
+      return stability::from_brute_force(brutes[static_cast<std::size_t>(p)]->trace(at, towards));
+    };
+    truths[k] = by_force(glm::dvec3(x), glm::dvec3(d));
+    const auto is_tie = [&](const Answer& answer) {
+      return !stability::same_answer(answer, truths[k], 1.0) &&
+             stability::is_tie(by_force, glm::dvec3(x), glm::dvec3(d), answer, 1.0);
+    };
+    tie32[k] = is_tie(singles[k]);
+    tie64[k] = is_tie(twices[k]);
   });
-  Table single("one walk, C++ float against brute force in double"),
-      twice("one walk, C++ double against brute force in double");
+  Table single("one walk, C++ float against brute force in double"), twice("one walk, C++ double against brute force in double");
   std::vector<double> errors;
   for (int k = 0; k < kRays; ++k) {
-    const std::string to = std::string(" -> ") + name_of(brute_answers[k].cls);
-    if (!test::same_answer(cls32[k], t32[k], brute_answers[k])) single.add(name_of(cls32[k]) + to, tie32[k]);
-    if (!test::same_answer(cls64[k], t64[k], brute_answers[k])) twice.add(name_of(cls64[k]) + to, tie64[k]);
-    if (cls32[k] == kClassHit && brute_answers[k].cls == BruteAnswer::Class::kHit)
-      errors.push_back(std::abs(t32[k] - brute_answers[k].t) / brute_answers[k].t);
+    const std::string to = std::string(" -> ") + class_name(truths[k].cls);
+    if (!stability::same_answer(singles[k], truths[k], 1.0)) single.add(class_name(singles[k].cls) + to, tie32[k]);
+    if (!stability::same_answer(twices[k], truths[k], 1.0)) twice.add(class_name(twices[k].cls) + to, tie64[k]);
+    if (singles[k].cls == kClassHit && truths[k].cls == kClassHit) {
+      errors.push_back(std::abs(singles[k].t - truths[k].t) / truths[k].t);
+    }
   }
   single.print(kRays);
   twice.print(kRays);
   std::sort(errors.begin(), errors.end());
-  std::printf("  distance, float against brute force: median %.2g, p99 %.2g, max %.2g relative\n",
-              errors[errors.size() / 2], errors[errors.size() * 99 / 100], errors.back());
+  std::printf("  distance, float against brute force: median %.2g, p99 %.2g, max %.2g relative\n", errors[errors.size() / 2],
+              errors[errors.size() * 99 / 100], errors.back());
 
   // 2. Whole answers, hand-offs included: device against C++ float (the same arithmetic), float against double.
   const Device device({}, {});
@@ -183,23 +174,20 @@ TEST(HouseTracer, AllCompilationsAndBruteForceAgree) {
     };
     const auto jumps = [&](int cls, double t) {
       for (int j = 0; j < 32; ++j) {
-        const f64::RayAnswer beside = in_double(origin + 2e-6 * test::hammersley_direction(j, 32),
-                                                glm::dvec3(d) + 2e-6 * test::hammersley_direction((j * 13) % 32, 32));
+        const f64::RayAnswer beside = in_double(origin + 2e-6 * stability::hammersley_direction(j, 32),
+                                                glm::dvec3(d) + 2e-6 * stability::hammersley_direction((j * 13) % 32, 32));
         if (!differs(cls, t, beside.cls, beside.t)) return true;
       }
       return false;
     };
-    if (differs(g.answer, g.t_m, a.cls, a.t))
-      glsl.add(std::string(name_of(g.answer)) + " -> " + name_of(a.cls), jumps(g.answer, g.t_m));
-    if (differs(a.cls, a.t, b.cls, b.t))
-      precision.add(std::string(name_of(a.cls)) + " -> " + name_of(b.cls), jumps(a.cls, a.t));
+    if (differs(g.answer, g.t_m, a.cls, a.t)) glsl.add(std::string(class_name(g.answer)) + " -> " + class_name(a.cls), jumps(g.answer, g.t_m));
+    if (differs(a.cls, a.t, b.cls, b.t)) precision.add(std::string(class_name(a.cls)) + " -> " + class_name(b.cls), jumps(a.cls, a.t));
   }
   std::sort(lookup_counts.begin(), lookup_counts.end());
   glsl.print(kRays);
   std::printf("  bit-identical (class, distance, probe): %d of %d\n", bits, kRays);
   precision.print(kRays);
-  std::printf("look-ups per ray: mean %.1f, p99 %.0f; unresolved: %.2f %%\n", lookups / kRays,
-              lookup_counts[kRays * 99 / 100], 100.0 * unknown / kRays);
+  std::printf("look-ups per ray: mean %.1f, p99 %.0f; unresolved: %.2f %%\n", lookups / kRays, lookup_counts[kRays * 99 / 100], 100.0 * unknown / kRays);
 
   EXPECT_EQ(single.unexplained(), 0);
   EXPECT_EQ(twice.unexplained(), 0);
