@@ -1,10 +1,12 @@
 // The body of tracer_f32.h and tracer_f64.h: the shared tracer's text with PW_REAL as its arithmetic, in namespace
-// probewalk::PW_REAL_NAMESPACE. No include guard: it is meant to be included once a type.
+// probewalk::PW_REAL_NAMESPACE. No include guard: it is meant to be included once a type. With PW_BASELINES it is the one
+// of content/baseline/baseline_f32.h, which walks by the methods that the product is measured against.
 #include <bit>
 #include <cmath>
 #include <cstdint>
 #include <glm/glm.hpp>
 
+#include "shaders/shared/baseline_layout.h"
 #include "shaders/shared/probe_layout.h"
 #include "shaders/shared/selection_rules.h"
 
@@ -38,15 +40,24 @@ inline float pw_float_from_bits(pw_uint bits) { return std::bit_cast<float>(bits
 inline const ProbeRecord& pw_probe(const GridConstants& grid, int index) {
   return reinterpret_cast<const ProbeRecord*>(host_address(grid.probes_address))[index];
 }
+#ifdef PW_BASELINES
+inline const BaselineRecord& pw_baseline(const BaselineConstants& constants, int index) {
+  return reinterpret_cast<const BaselineRecord*>(host_address(constants.records_address))[index];
+}
+#endif
 
 #if defined(__GNUC__)
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wconversion"  // GLSL has no casts that C++ would not warn about
 #pragma GCC diagnostic ignored "-Wfloat-conversion"
 #pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
+#pragma GCC diagnostic ignored "-Wunused-parameter"  // of a hook that not every walk needs
 #endif
 #include "shaders/shared/tracer.h"
 #include "shaders/shared/tracer_radiance.h"
+#ifdef PW_BASELINES
+#include "shaders/shared/baseline_radiance.h"
+#endif
 #if defined(__GNUC__)
 #pragma GCC diagnostic pop
 #endif

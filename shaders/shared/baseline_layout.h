@@ -37,8 +37,8 @@ struct BaselineRecord {
   pw_uvec2 minimum_address;
   pw_uvec2 normal_address;
   pw_uint n_log2;  // 0 = none
-  float mean_m;    // harmonic mean of the distances: the sphere proxy's radius
-  pw_vec3 box_min_m;  // of the box proxy, relative to the probe
+  float mean_m;    // harmonic mean of the distances: the sphere proxy's radius; 0 = the probe sees sky alone
+  pw_vec3 box_min_m;  // of the box proxy, relative to the probe, which is inside
   float reserved0;
   pw_vec3 box_max_m;
   float reserved1;
@@ -50,16 +50,25 @@ struct BaselineConstants {
   float step_m;              // march-3d: length of a step
   float epsilon_m;           // kEpsilonFixed; for kEpsilonDynamic and kEpsilonAngle the factor k
   float epsilon_growth;      // epsilon is multiplied by this for every probe that has failed (1 = never)
-  float farthest_m;          // rays end here: a march-3d has no other end
-  pw_int max_steps;          // of one march through one probe
+  float farthest_m;          // rays end here: a march-3d has no other end; 0 = as far as any probe sees, see baseline_constants_for
+  pw_int max_steps;          // of one march through one probe; of the impostor's search for a first bracket
   pw_uint reserved;
+};
+
+// What walk_baseline is told beside the ray. On the device all but the constants are specialisation constants.
+struct BaselineContext {
+  pw_int method;          // kMethodEnvironment and on
+  pw_int epsilon_rule;    // kEpsilon...
+  pw_int reject_backfaces;
+  pw_int backward_trace;
+  BaselineConstants constants;
 };
 
 PW_SHARED_END
 
 #ifdef __cplusplus
 namespace probewalk {
-static_assert(sizeof(BaselineRecord) == 64 && sizeof(BaselineConstants) == 32);
+static_assert(sizeof(BaselineRecord) == 64 && sizeof(BaselineConstants) == 32 && sizeof(BaselineContext) == 48);
 }  // namespace probewalk
 #endif
 

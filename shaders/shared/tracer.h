@@ -5,15 +5,12 @@
 //   pw_word_real(address, index)        the same as a float, widened to real
 //   pw_probe(grid, index)               a ProbeRecord
 //   PW_OUT(type), PW_INOUT(type)        parameter directions
-// and may provide
-//   PW_WALK(probe, id, x, d, t, level)  another walk of one ray through one probe (shaders/shared/baseline_walks.h)
+// and may define PW_BASELINES, for a tracer that walks by another method than its own; then it also provides
+//   pw_baseline(constants, index)       a BaselineRecord
 // No include guard: C++ includes it once a type.
+#include "octahedral.h"
 #include "selection_rules.h"
 #include "tracer_walk.h"
-
-#ifndef PW_WALK
-#define PW_WALK(probe, id, x, d, t, level) walk_probe(probe, x, d, t, level)
-#endif
 
 // How far ahead of a hand-off the next probe's view is tested, as a fraction of the mean probe spacing.
 #define PW_START_AHEAD real(0.01)
@@ -42,14 +39,6 @@ PW_FUNCTION real3 relative_origin(ProbeRecord probe, real3 origin_hi, real3 orig
   return (origin_hi - real3(probe.position_hi_m)) + (origin_lo - real3(probe.position_lo_m));
 }
 
-PW_FUNCTION real2 octahedral_uv(real3 x) {
-  real scale = real(1) / (abs(x.x) + abs(x.y) + abs(x.z));
-  real2 p = real2(x.x, x.y) * scale;
-  if (x.z >= real(0)) return p;
-  return real2((real(1) - abs(p.y)) * (p.x < real(0) ? real(-1) : real(1)),
-               (real(1) - abs(p.x)) * (p.y < real(0) ? real(-1) : real(1)));
-}
-
 // w of the probe's vertex nearest to the direction of x.
 PW_FUNCTION real nearest_vertex_w(ProbeRecord probe, real3 x) {
   int n = 1 << int(probe.n_log2);
@@ -76,6 +65,16 @@ PW_FUNCTION int start_test(ProbeRecord probe, real3 x, real margin, PW_INOUT(pw_
   real surface = nearest_vertex_w(probe, x);
   return surface <= real(0) || w > surface * (real(1) - margin) ? 1 : 0;
 }
+
+// PW_WALK: the walk of one ray through one probe, and PW_WALK_PARAMETER what trace_ray is given for it beforehand.
+#ifdef PW_BASELINES
+#include "baseline_walks.h"
+#define PW_WALK_PARAMETER BaselineContext context,
+#define PW_WALK(probe, id, x, d, t, level, failures) walk_baseline(context, probe, id, x, d, t, failures)
+#else
+#define PW_WALK_PARAMETER
+#define PW_WALK(probe, id, x, d, t, level, failures) walk_probe(probe, x, d, t, level)
+#endif
 
 // A corner's score falls from half a cell away on, so that one that the next cell has not got is not the first choice at
 // the border: else a step across it swaps the probes of many rays at once, and the picture jumps. In units of score a
@@ -168,8 +167,8 @@ PW_FUNCTION CandidateList cell_candidates(GridConstants grid, TraceConstants dia
 // unit direction d. Probes are tried one after the other, each from where the last one's knowledge ended; candidates come
 // from the cell of the current point, then from the cells one and two spacings ahead, then from the origin's; the start
 // test skips those that cannot see the current point (design: fewer-tries, 1).
-PW_FUNCTION RayAnswer trace_ray(GridConstants grid, TraceConstants dials, SelectionRules rules, real3 origin_hi,
-                                real3 origin_lo, real3 d, int start_level) {
+PW_FUNCTION RayAnswer trace_ray(PW_WALK_PARAMETER GridConstants grid, TraceConstants dials, SelectionRules rules,
+                                real3 origin_hi, real3 origin_lo, real3 d, int start_level) {
   RayAnswer answer;
   answer.cls = kClassUnknown;
   answer.t = real(0);
@@ -215,7 +214,7 @@ PW_FUNCTION RayAnswer trace_ray(GridConstants grid, TraceConstants dials, Select
     }
     ProbeRecord probe = pw_probe(grid, chosen);
     const real t_start = rules.hand_on != 0 ? t : real(0);
-    WalkState walk = PW_WALK(probe, chosen, relative_origin(probe, origin_hi, origin_lo), d, t_start, start_level);
+    WalkState walk = PW_WALK(probe, chosen, relative_origin(probe, origin_hi, origin_lo), d, t_start, start_level, failures);
     answer.tries += 1u;
     answer.lookups += walk.lookups;
     if (walk.status == kClassHit || walk.status == kClassMiss) {
@@ -261,8 +260,13 @@ PW_FUNCTION RayAnswer trace_ray(GridConstants grid, TraceConstants dials, Select
   return answer;
 }
 
+#ifndef PW_BASELINES
 // The same by the product's own rules.
 PW_FUNCTION RayAnswer trace_ray(GridConstants grid, TraceConstants dials, real3 origin_hi, real3 origin_lo, real3 d,
                                 int start_level) {
   return trace_ray(grid, dials, default_rules(), origin_hi, origin_lo, d, start_level);
 }
+#endif
+
+#undef PW_WALK
+#undef PW_WALK_PARAMETER

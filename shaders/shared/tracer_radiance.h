@@ -31,19 +31,6 @@ PW_FUNCTION pw_vec3 decode_texel(pw_uint word) {
   return pw_vec3(float(word & 511u), float((word >> 9) & 511u), float((word >> 18) & 511u)) * unit;
 }
 
-// Index of texel (i, j) of an r x r map, steps outside folded back over the octahedron's edges.
-PW_FUNCTION int folded_texel(int i, int j, int r) {
-  if (i < 0 || i >= r) {
-    i = i < 0 ? -1 - i : 2 * r - 1 - i;
-    j = r - 1 - j;
-  }
-  if (j < 0 || j >= r) {
-    j = j < 0 ? -1 - j : 2 * r - 1 - j;
-    i = r - 1 - i;
-  }
-  return min(max(j, 0), r - 1) * r + min(max(i, 0), r - 1);
-}
-
 PW_FUNCTION float texel_w_code(ProbeRecord probe, int texel) {
   int codes = ((4 << (2 * radiance_log2(probe))) - 1) / 3;  // behind the whole mip chain
   return float((pw_word(probe.radiance_address, codes + (texel >> 1)) >> (16u * pw_uint(texel & 1))) & 65535u);
