@@ -126,15 +126,14 @@ class Room {
     const TraceConstants dials = default_dials(pack.manifest().radiance_scale);
     const float spread_rad = kFov_rad / static_cast<float>(options.height_px);
     oat.run = [this, dials, spread_rad](std::span<float> t_m) {
-      std::int64_t ns = 0;
-      const std::vector<BatchAnswer> answers = batch_->trace(*store_, dials, world_rays_, spread_rad, ns);
+      const auto [answers, device_ns] = batch_->trace_timed(*store_, dials, world_rays_, spread_rad);
       double lookups = 0.0;
       for (std::size_t i = 0; i < answers.size(); ++i) {
         t_m[i] = answers[i].t_m;
         lookups += answers[i].lookups;
       }
       contenders_.front().lookups_mean = lookups / static_cast<double>(answers.size());
-      return ns;
+      return device_ns;
     };
     contenders_.push_back(std::move(oat));
   }
