@@ -68,6 +68,7 @@ ordered_json to_json(const CaseTally& tally) {
           {"device_same_bits", tally.device_same_bits},
           {"classes", classes},
           {"float_vs_double", to_json(tally.float_double)},
+          {"float_vs_flat", to_json(tally.float_flat)},
           {"device_vs_double", to_json(tally.device_double)},
           {"device_vs_float", to_json(tally.device_float)},
           {"float_vs_brute_force", to_json(tally.float_brute)},
@@ -167,9 +168,11 @@ std::vector<std::string> summary(const TrialInfo& info, const std::vector<CaseRe
       "surface, cuts included, that shares no code with the tracer.",
       all.rays, results.size(), device ? " on the device and" : "", all.float_brute.rays, brute_fine));
   lines.push_back(fmt::format(
-      "{} answers held a NaN or an infinity; {} walks were endless (the longest took {} look-ups); {} answers changed when "
-      "nodes of the pyramid were skipped instead of walked cell by cell.",
-      all.not_finite, all.endless, all.lookups_max, all.hierarchical_differs));
+      "{} answers held a NaN or an infinity; {} walks were endless (the longest took {} look-ups); {} answers changed by "
+      "a bit when nodes of the pyramid were skipped instead of walked cell by cell; where one plane stood for many cells, {} "
+      "answers changed beyond ties, and distances by {:.1e} at most of the others' 99 %.",
+      all.not_finite, all.endless, all.lookups_max, all.hierarchical_differs, all.float_flat.beyond_ties(),
+      all.float_flat.errors.percentile(0.99)));
   if (device) {
     lines.push_back(fmt::format("The device gave the same bits as C++ float for {} of {} rays; {} answers differ, {} of them beyond ties.",
                                 all.device_same_bits, all.device_rays, all.device_float.disagreements, all.device_float.beyond_ties()));

@@ -41,7 +41,7 @@ Answer from_brute_force(const BruteAnswer& answer) {
 std::uint32_t most_lookups(const ProbeRecord& probe, int start_level) {
   const std::uint32_t n = 1u << probe.n_log2;
   const auto top = static_cast<std::uint32_t>(std::clamp(start_level % kWithoutPlanes, 0, static_cast<int>(probe.n_log2) - 1));
-  return 4 * (n + 1) * (top + 1);
+  return 4 * (n + 1) * (top + 2);
 }
 
 }  // namespace probewalk::stability

@@ -32,6 +32,7 @@ void write_text(const std::filesystem::path& file, const std::string& text) {
 }
 
 void run_stability(const StabilityOptions& options, const CommonOptions& common) {
+  if (!(options.rays >= 1.0) || !(options.tie > 0.0)) throw BadUsage("--rays and --tie take numbers, such as 1e6 and 2e-6");
   const std::filesystem::path directory = options.output;
   std::error_code error;
   std::filesystem::create_directories(directory, error);
@@ -85,7 +86,7 @@ void add_stability_command(CLI::App& app, CommonOptions& common) {
   command->footer(
       "Walks rays of every kind that has broken a tracer (from and through the probe, along and within octants' planes,\n"
       "denormal and infinite numbers, from surfaces, scenes of 1 mm and of 10 km, samples at the pack format's limits, ...)\n"
-      "through one probe at a time: on the device, in C++ float with and without the pyramid, and in double; a part of them,\n"
+      "through one probe at a time: on the device, in C++ float with and without pyramid and planes, and in double; a part of them,\n"
       "up to 1.3 million, also against brute force, which visits every piece of the probe's surface and shares no code with\n"
       "the tracer. Needs no pack. Writes DIR/index.html (a table by case), results.json and results.csv, and fails (exit 1)\n"
       "when an answer is no number, a walk does not end in its bound, the pyramid changes a bit, or two contenders disagree\n"

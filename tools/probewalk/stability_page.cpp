@@ -56,6 +56,8 @@ std::string tally_cells(const CaseTally& tally) {
   html += zero_is_good(tally.not_finite) + zero_is_good(tally.endless) + zero_is_good(tally.hierarchical_differs);
   const double rays = static_cast<double>(std::max<std::uint64_t>(tally.rays, 1));
   fmt::format_to(std::back_inserter(html), "<td>{:.1f}</td><td>{}</td>", static_cast<double>(tally.lookups) / rays, tally.lookups_max);
+  html += disagreements(tally.float_flat);
+  fmt::format_to(std::back_inserter(html), "<td>{}</td>", error_text(tally.float_flat.errors.percentile(0.99)));
   html += disagreements(tally.float_double);
   fmt::format_to(std::back_inserter(html), "<td>{}</td><td>{}</td>", error_text(tally.float_double.errors.percentile(0.99)),
                  error_text(tally.float_double.errors.max()));
@@ -76,15 +78,15 @@ std::string tally_cells(const CaseTally& tally) {
 std::string table(const std::vector<CaseResult>& results) {
   std::string html =
       "<div class=\"scroll\"><table>\n<tr><th></th><th class=\"group\" colspan=\"6\">sound</th>"
-      "<th class=\"group\" colspan=\"3\">float against double</th><th class=\"group\" colspan=\"2\">device against float</th>"
+      "<th class=\"group\" colspan=\"2\">planes</th><th class=\"group\" colspan=\"3\">float against double</th><th class=\"group\" colspan=\"2\">device against float</th>"
       "<th class=\"group\" colspan=\"5\">against brute force</th></tr>\n"
       "<tr><th>case</th><th>rays</th><th>NaN</th><th>endless</th><th>pyramid changes</th><th>look-ups, mean</th><th>max</th>"
-      "<th>beyond ties</th><th>error p99</th><th>worst</th><th>beyond ties</th><th>other bits</th>"
+      "<th>beyond ties</th><th>change p99</th><th>beyond ties</th><th>error p99</th><th>worst</th><th>beyond ties</th><th>other bits</th>"
       "<th>rays</th><th>float beyond ties</th><th>double beyond ties</th><th>error p99</th><th>worst</th></tr>\n";
   std::string place;
   for (const CaseResult& result : results) {
     const std::string here = fmt::format("{}, {} cells a side", result.place, result.cells);
-    if (here != place) html += "<tr class=\"place\"><td colspan=\"17\">" + html_escaped(here) + "</td></tr>\n";
+    if (here != place) html += "<tr class=\"place\"><td colspan=\"19\">" + html_escaped(here) + "</td></tr>\n";
     place = here;
     html += "<tr><td class=\"case\">" + html_escaped(result.hard.name) + "<span class=\"soft\">" + html_escaped(result.hard.says) +
             "</span></td>" + tally_cells(result.tally) + "</tr>\n";
@@ -128,7 +130,9 @@ std::string stability_page(const stability::TrialInfo& info, const std::vector<C
   html += "<h2>Case by case</h2>\n"
           "<p>“Beyond ties” counts rays whose class or distance (by more than 1 %) differs and that are no ties, of all that differ; "
           "the classes are in the cell’s tip. Errors are relative distances of rays on whose class both agree. “Endless” means "
-          "more look-ups than lines of the grid times levels can cost. “Other bits” counts device answers that are not C++ "
+          "more look-ups than lines of the grid times levels can cost. “Pyramid changes” counts answers that a "
+          "walk by pyramid has other bits of than cell by cell; “planes” compares with that walk when one plane may stand for "
+          "many cells. “Other bits” counts device answers that are not C++ "
           "float’s to the last bit.</p>\n";
   html += table(results);
   html += "<h2>Where and how</h2>\n<table>\n";
