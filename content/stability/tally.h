@@ -55,8 +55,10 @@ struct Comparison {
     }
     ++disagreements;
     ++by_class[static_cast<std::size_t>(answer.cls) % kClasses][static_cast<std::size_t>(reference.cls) % kClasses];
-    if (tie()) ++ties;
-    else if (index < beyond.index) beyond = {ray, answer, reference, index};
+    if (tie())
+      ++ties;
+    else if (index < beyond.index)
+      beyond = {ray, answer, reference, index};
   }
   void merge(const Comparison& other);
 };
@@ -79,7 +81,7 @@ struct CaseTally {
   std::uint64_t lookups = 0;               // C++ float, with the pyramid
   std::uint32_t lookups_max = 0;
   std::uint32_t lookups_bound = 0;
-  std::uint64_t more_than_one = 0;         // look-ups, of rays of which one is asked
+  std::uint64_t more_than_one = 0;                // look-ups, of rays of which one is asked
   std::array<std::uint64_t, kClasses> classes{};  // of C++ float
 
   void merge(const CaseTally& other);

@@ -62,7 +62,8 @@ class Judge {
     const auto against = [&](const Reference& reference, const Answer& answer) {
       return [&] {
         if (hard_.hostile) return false;
-        if (&answer != &single && !(as_single && &answer == device)) return is_tie(reference, x, d, answer, place_.scale_m, tie_);
+        if (&answer != &single && !(as_single && &answer == device))
+          return is_tie(reference, x, d, answer, place_.scale_m, tie_);
         if (!single_ties) single_ties = is_tie(reference, x, d, single, place_.scale_m, tie_);
         return *single_ties;
       };
@@ -160,7 +161,8 @@ std::vector<CaseResult> run_cases(const std::vector<HardCase>& cases, const Tria
       if (progress.cancelled()) throw Interrupted("interrupted; nothing has been written");
       const std::uint64_t count = std::min(kChunk, plans[c].rays - first);
       // Seeded by the case's name, so that other cases added or left out change nothing.
-      const std::uint64_t seed = hash_of(fmt::format("{} {} {}", cases[c].name, place->name, place->geometry.n)) + first / kChunk;
+      const std::uint64_t seed =
+          hash_of(fmt::format("{} {} {}", cases[c].name, place->name, place->geometry.n)) + first / kChunk;
       result.tally.merge(judge_chunk(cases[c], *place, options, first, count, plans[c].brute_rays, seed));
       progress.advance(count);
     }

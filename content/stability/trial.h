@@ -13,8 +13,8 @@
 
 namespace probewalk::stability {
 
-// The contender that is not of this library: the device, or in tests a tracer with a planted fault. Called by one thread,
-// case after case; the place stays the same object for all its cases and is alive during the call.
+// The contender that is not of this library: the device, or in tests a tracer with a planted fault. Called by one
+// thread, case after case; the place stays the same object for all its cases and is alive during the call.
 using Contender = std::function<std::vector<Answer>(const Place& place, std::span<const Ray> rays)>;
 
 struct TrialOptions {

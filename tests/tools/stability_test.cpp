@@ -30,7 +30,8 @@ TEST(Stability, WritesPageRowsAndSummary) {
   const nlohmann::json json = nlohmann::json::parse(read_text(out / "results.json"));
   EXPECT_EQ(json["passed"], true);
   EXPECT_TRUE(json["failures"].empty());
-  for (const char* key : {"schema", "command", "build", "device", "machine", "started_utc", "seconds", "tie", "totals"}) {
+  for (const char* key :
+       {"schema", "command", "build", "device", "machine", "started_utc", "seconds", "tie", "totals"}) {
     EXPECT_TRUE(json.contains(key)) << key;
   }
   EXPECT_THAT(json["command"].get<std::string>(), HasSubstr("stability"));
@@ -46,10 +47,11 @@ TEST(Stability, WritesPageRowsAndSummary) {
     EXPECT_EQ(row["endless_count"], 0);
     EXPECT_EQ(row["hierarchical_differs"], 0);
     EXPECT_LE(row["lookups_max"], row["lookups_bound"]);
-    for (const char* pair : {"float_vs_double", "float_vs_flat", "device_vs_double", "device_vs_float", "float_vs_brute_force",
-                             "device_vs_brute_force", "double_vs_brute_force"}) {
+    for (const char* pair : {"float_vs_double", "float_vs_flat", "device_vs_double", "device_vs_float",
+                             "float_vs_brute_force", "device_vs_brute_force", "double_vs_brute_force"}) {
       EXPECT_EQ(row[pair]["beyond_ties"], 0) << row["case"] << " " << pair;
-      EXPECT_TRUE(row[pair].contains("error_p99") && row[pair].contains("error_max") && row[pair].contains("by_class")) << pair;
+      EXPECT_TRUE(row[pair].contains("error_p99") && row[pair].contains("error_max") && row[pair].contains("by_class"))
+          << pair;
     }
   }
   EXPECT_EQ(json["totals"]["rays"], rays);
@@ -66,7 +68,8 @@ TEST(Stability, WritesPageRowsAndSummary) {
 TEST(Stability, AFailedCheckIsExitCodeOne) {
   const fs::path dir = fresh_folder("stability-fails");
   const fs::path out = dir / "out";
-  const RunResult r = run_probewalk(dir, {"stability", "-o", out.string(), "--rays", "2e4", "--tie", "1e-15", "--json"});
+  const RunResult r =
+      run_probewalk(dir, {"stability", "-o", out.string(), "--rays", "2e4", "--tie", "1e-15", "--json"});
   EXPECT_EQ(r.exit_code, 1) << r.err;
   EXPECT_THAT(r.err, HasSubstr("beyond ties"));
   // Both machines and people are told which.
@@ -105,8 +108,11 @@ TEST(Stability, TraceRefusesNumbersThatAreNone) {
   const fs::path out = dir / "box.probes";
   ASSERT_EQ(run_probewalk(dir, {"scene", "box-room", "-o", (dir / "box.glb").string(), "-q"}).exit_code, 0);
   ASSERT_EQ(run_probewalk(dir, {"bake", (dir / "box.glb").string(), "-o", out.string(), "--resolution", "16",
-                                "--radiance-resolution", "8", "--max-probes", "1", "--samples", "8", "-q"}).exit_code, 0);
-  for (const char* ray : {"nan 1 0 0 0 -1", "0 inf 0 0 0 -1", "0 1 0 0 nan -1", "0 1 0 0 0 0", "0 1 0 inf 0 0", "1e300 1 0 0 0 1"}) {
+                                "--radiance-resolution", "8", "--max-probes", "1", "--samples", "8", "-q"})
+                .exit_code,
+            0);
+  for (const char* ray :
+       {"nan 1 0 0 0 -1", "0 inf 0 0 0 -1", "0 1 0 0 nan -1", "0 1 0 0 0 0", "0 1 0 inf 0 0", "1e300 1 0 0 0 1"}) {
     std::ofstream(dir / "rays.txt") << ray << "\n";
     const RunResult r = run_probewalk(dir, {"trace", out.string(), "--rays", (dir / "rays.txt").string()});
     EXPECT_EQ(r.exit_code, 3) << ray;
