@@ -16,7 +16,7 @@ namespace probewalk::stability {
 namespace {
 
 // Rays that are in memory at once; a chunk's rays follow from its number alone.
-constexpr std::uint64_t kChunk = 1u << 15;
+constexpr std::uint64_t kChunk = 1u << 13;
 
 // FNV-1a.
 std::uint64_t hash_of(const std::string& text) {
@@ -97,8 +97,13 @@ class Judge {
   double tie_;
 };
 
-CaseTally judge_chunk(const HardCase& hard, const Place& place, const TrialOptions& options, std::uint64_t first,
-                      std::uint64_t count, std::uint64_t brute_rays, std::uint64_t seed) {
+// Rays first .. first + count of a case. Those that meet brute force are spread evenly over the case, so that the time
+// left can be told.
+CaseTally judge_chunk(const HardCase& hard, const Place& place, const TrialOptions& options, const CasePlan& plan,
+                      std::uint64_t first, std::uint64_t count, std::uint64_t seed, Progress& progress) {
+  const auto meets_brute_force = [&](std::uint64_t index) {
+    return (index + 1) * plan.brute_rays / plan.rays != index * plan.brute_rays / plan.rays;
+  };
   Random random(seed);
   std::vector<Ray> rays;
   rays.reserve(count);
@@ -109,9 +114,12 @@ CaseTally judge_chunk(const HardCase& hard, const Place& place, const TrialOptio
   return tbb::parallel_reduce(
       tbb::blocked_range<std::uint64_t>(0, count, 64), CaseTally{},
       [&](const tbb::blocked_range<std::uint64_t>& range, CaseTally tally) {
+        if (progress.cancelled()) return tally;  // a chunk half done is thrown away
         for (std::uint64_t k = range.begin(); k < range.end(); ++k) {
-          judge.judge(rays[k], first + k, options.device ? &device.at(k) : nullptr, first + k < brute_rays, tally);
+          judge.judge(rays[k], first + k, options.device ? &device.at(k) : nullptr, meets_brute_force(first + k),
+                      tally);
         }
+        progress.advance(range.size());
         return tally;
       },
       [](CaseTally a, const CaseTally& b) {
@@ -156,15 +164,15 @@ std::vector<CaseResult> run_cases(const std::vector<HardCase>& cases, const Tria
       place.reset();
       place = make_place(cases[c].place);
     }
+    if (options.started) options.started(cases[c]);
     CaseResult result{cases[c], place->name, place->geometry.n, {}};
     for (std::uint64_t first = 0; first < plans[c].rays; first += kChunk) {
-      if (progress.cancelled()) throw Interrupted("interrupted; nothing has been written");
       const std::uint64_t count = std::min(kChunk, plans[c].rays - first);
       // Seeded by the case's name, so that other cases added or left out change nothing.
       const std::uint64_t seed =
           hash_of(fmt::format("{} {} {}", cases[c].name, place->name, place->geometry.n)) + first / kChunk;
-      result.tally.merge(judge_chunk(cases[c], *place, options, first, count, plans[c].brute_rays, seed));
-      progress.advance(count);
+      result.tally.merge(judge_chunk(cases[c], *place, options, plans[c], first, count, seed, progress));
+      if (progress.cancelled()) throw Interrupted("interrupted; nothing has been written");
     }
     result.tally.lookups_bound = most_lookups(place->record, kStartLevel);
     results.push_back(std::move(result));

@@ -22,6 +22,7 @@ struct TrialOptions {
   double tie = kTie;                // see agreement.h
   int threads = 0;                  // 0 = all cores
   Contender device;                 // empty = none
+  std::function<void(const HardCase&)> started;  // told of every case before its first ray; may be empty
 };
 
 inline constexpr std::uint64_t kLeastRays = 64;

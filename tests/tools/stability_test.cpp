@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "content/stability/cases.h"
+#include "tools/probewalk/patience.h"
 #include "tools/run_probewalk.h"
 
 namespace probewalk::test {
@@ -100,6 +101,28 @@ TEST(Stability, RefusesWhatIsNoNumberOfRays) {
   EXPECT_EQ(run_probewalk(dir, {"stability"}).exit_code, 2);
   std::ofstream(dir / "file") << "in the way";
   EXPECT_EQ(run_probewalk(dir, {"stability", "-o", (dir / "file" / "out").string()}).exit_code, 3);
+}
+
+// A walk that did not end could not be counted; the program says so and ends itself.
+TEST(StabilityDeathTest, WorkThatDoesNotEndIsEnded) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  const auto never_ends = [] {
+    SilentProgress silent;
+    Patience patience(silent, std::chrono::seconds(1));
+    patience.doing("the rays `round and round`");
+    patience.begin("hard cases", 10, "rays");
+    for (;;) std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  };
+  EXPECT_EXIT(never_ends(), ::testing::ExitedWithCode(1), "round and round.*does not end");
+}
+
+TEST(Stability, WorkThatAdvancesIsLeftAlone) {
+  SilentProgress silent;
+  Patience patience(silent, std::chrono::seconds(3));
+  for (int k = 0; k < 25; ++k) {
+    patience.advance(1);
+    std::this_thread::sleep_for(std::chrono::milliseconds(200));
+  }
 }
 
 // Rays whose numbers are none never reach the tracer from the command line.

@@ -13,6 +13,7 @@
 #include "content/stability/trial.h"
 #include "render/device.h"
 #include "tools/probewalk/commands.h"
+#include "tools/probewalk/patience.h"
 #include "tools/probewalk/stability_device.h"
 #include "tools/probewalk/stability_page.h"
 #include "xr/latency/run_info.h"
@@ -20,6 +21,9 @@
 namespace probewalk {
 
 namespace {
+
+// Between one answered block of rays and the next: seconds at most, however busy the machine.
+constexpr std::chrono::seconds kPatience{600};
 
 struct StabilityOptions {
   std::string output;
@@ -62,8 +66,12 @@ void run_stability(const StabilityOptions& options, const CommonOptions& common)
     return contender.walk(place, rays);
   };
   const std::unique_ptr<Progress> progress = make_progress(common);
+  Patience patience(*progress, kPatience);
+  trial.started = [&](const stability::HardCase& hard) {
+    patience.doing(fmt::format("the rays `{}` at `{}`", hard.name, stability::place_name(hard.place)));
+  };
   const auto start = std::chrono::steady_clock::now();
-  const std::vector<stability::CaseResult> results = run_cases(stability::hard_cases(), trial, *progress);
+  const std::vector<stability::CaseResult> results = run_cases(stability::hard_cases(), trial, patience);
   info.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 
   const std::string json =
