@@ -78,12 +78,12 @@ struct WalkResult {
 
 // One walk by any method; id: of the probe among the records of the context.
 WalkResult walk_once(const TracerChoice& choice, const BaselineContext& context, const ProbeRecord& probe, int id,
-                     glm::vec3 x, glm::vec3 d, float t_start, int failures) {
+                     glm::vec3 x, glm::vec3 d, float t_start, int failures, int start_level) {
   if (choice.is_baseline()) {
     const auto state = baseline_f32::walk_baseline(context, probe, id, x, d, t_start, failures);
     return {state.status, state.lookups, state.t, state.t_safe};
   }
-  const auto state = f32::walk_probe(probe, x, d, t_start, choice.start_level());
+  const auto state = f32::walk_probe(probe, x, d, t_start, start_level);
   const bool answered = state.status == kClassHit || state.status == kClassMiss;
   return {answered ? state.status : kClassUnknown, state.lookups, state.t, state.t_safe};
 }
@@ -108,7 +108,8 @@ std::vector<StudyRay> rays_seen_by(const StudyScene& scene, std::span<const glm:
     if (k > most) throw BadInput("no point of the scene is seen by its probes; their places are wrong");
     const glm::dvec3 part(radical_inverse(k, 2), radical_inverse(k, 3), radical_inverse(k, 5));
     const glm::dvec3 origin_m = low + size * part;
-    if (std::none_of(probes_m.begin(), probes_m.end(), [&](glm::dvec3 p) { return sees(scene.rays(), p, origin_m); })) continue;
+    if (std::none_of(probes_m.begin(), probes_m.end(), [&](glm::dvec3 p) { return sees(scene.rays(), p, origin_m); }))
+      continue;
     const double z = 1.0 - 2.0 * radical_inverse(k, 7), angle = 2.0 * std::numbers::pi * radical_inverse(k, 11);
     const double r = std::sqrt(std::max(0.0, 1.0 - z * z));
     rays.push_back({origin_m, {r * std::cos(angle), r * std::sin(angle), z}});
@@ -127,13 +128,13 @@ OneProbe::OneProbe(const StudyScene& scene, glm::dvec3 position_m, int side, Pro
   maps_ = make_baseline_maps(scene.rays(), std::span(&position_m_, 1), side, progress);
 }
 
-Walk OneProbe::walk(const TracerChoice& choice, const StudyRay& ray) const {
+Walk OneProbe::walk(const TracerChoice& choice, const StudyRay& ray, std::optional<int> start_level) const {
   const std::vector<BaselineRecord> records = records_in_memory(maps_);
   BaselineContext context = baseline_context(choice, &maps_);
   context.constants.records_address = host_address(records.data());
   const ProbeRecord probe = record_in_memory(probe_);
   const WalkResult result = walk_once(choice, context, probe, 0, relative_to(probe, ray.origin_m),
-                                      glm::vec3(ray.direction), 0.0f, 0);
+                                      glm::vec3(ray.direction), 0.0f, 0, start_level.value_or(choice.start_level()));
   return {result.cls, result.lookups, static_cast<double>(result.t)};
 }
 
@@ -175,7 +176,8 @@ ProbeSet lattice_probes(const StudyScene& scene, const ProbeLattice& lattice, in
 // Sums, turned into means at the end.
 class Tally {
  public:
-  void add(const StudyRay& ray, std::span<const glm::dvec3> positions_m, int cls, int probe, unsigned lookups, unsigned tries) {
+  void add(const StudyRay& ray, std::span<const glm::dvec3> positions_m, int cls, int probe, unsigned lookups,
+           unsigned tries) {
     ++rays_;
     count_.lookups_mean += lookups;
     count_.one_lookup_share += lookups == 1 ? 1 : 0;
@@ -211,7 +213,9 @@ class Tally {
 }  // namespace
 
 ManyProbes::ManyProbes(const StudyScene& scene, const ProbeLattice& lattice, int side, Progress& progress)
-    : scene_(scene), positions_m_(lattice.positions_m), probes_(lattice_probes(scene, lattice, side, progress)),
+    : scene_(scene),
+      positions_m_(lattice.positions_m),
+      probes_(lattice_probes(scene, lattice, side, progress)),
       maps_(make_baseline_maps(scene.rays(), lattice.positions_m, side, progress)) {}
 
 ManyProbes::Count ManyProbes::by_cell(const TracerChoice& choice, std::span<const StudyRay> rays) const {
@@ -247,7 +251,7 @@ ManyProbes::Count ManyProbes::by_best_of_all(const TracerChoice& choice, std::sp
       probe = candidates[k].second;
       const ProbeRecord& record = probes_.records()[static_cast<std::size_t>(probe)];
       result = walk_once(choice, context, record, probe, relative_to(record, ray.origin_m), glm::vec3(ray.direction), t,
-                         static_cast<int>(walks));
+                         static_cast<int>(walks), choice.start_level());
       lookups += result.lookups;
       ++walks;
       t = std::max(t, result.t_safe);

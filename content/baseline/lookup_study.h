@@ -1,11 +1,12 @@
-// Look-ups counted over many rays: through one probe at any resolution, by the angle at which the ray leaves it; through
-// grids of ever more probes; and by how many probes failed before one answered (Donow 2016, chapter 9). Maps of geometry
-// alone, made from a procedural scene.
+// Look-ups counted over many rays: through one probe at any resolution, by the angle at which the ray leaves it;
+// through grids of ever more probes; and by how many probes failed before one answered (Donow 2016, chapter 9). Maps of
+// geometry alone, made from a procedural scene.
 #pragma once
 
 #include <array>
 #include <glm/glm.hpp>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -34,8 +35,8 @@ struct StudyRay {
   glm::dvec3 origin_m, direction;  // unit
 };
 
-// `count` rays that start where at least one of the probes sees them, spread over what the bounds hold of such points and
-// over all directions alike; the same on every run.
+// `count` rays that start where at least one of the probes sees them, spread over what the bounds hold of such points
+// and over all directions alike; the same on every run.
 std::vector<StudyRay> rays_seen_by(const StudyScene& scene, std::span<const glm::dvec3> probes_m, int count);
 
 // Angle in [0, pi] between a ray's displacement from a probe and its direction: 0 = it runs straight away.
@@ -51,8 +52,9 @@ struct Walk {
 class OneProbe {
  public:
   OneProbe(const StudyScene& scene, glm::dvec3 position_m, int side, Progress& progress);
-  // The method's walk alone, from the ray's origin: no selection, no start test.
-  Walk walk(const TracerChoice& choice, const StudyRay& ray) const;
+  // The method's walk alone, from the ray's origin: no selection, no start test. `start_level`: of the product's first
+  // look, instead of the choice's.
+  Walk walk(const TracerChoice& choice, const StudyRay& ray, std::optional<int> start_level = {}) const;
   glm::dvec3 position_m() const { return position_m_; }
   int side() const { return maps_.n; }
 
@@ -62,8 +64,8 @@ class OneProbe {
   BaselineMaps maps_;
 };
 
-// Probes on a regular grid over the scene's bounds: per_axis^3 less those that would stand in a solid, where the nearest
-// probe serves the grid's point.
+// Probes on a regular grid over the scene's bounds: per_axis^3 less those that would stand in a solid, where the
+// nearest probe serves the grid's point.
 struct ProbeLattice {
   std::vector<glm::dvec3> positions_m;
   ProbeGrid grid;
@@ -77,16 +79,16 @@ class ManyProbes {
 
   struct Count {
     double lookups_mean = 0.0;
-    double angle_mean_rad = 0.0;            // between the ray and the displacement from the probe that answered
-    double one_lookup_share = 0.0;          // of the rays
+    double angle_mean_rad = 0.0;    // between the ray and the displacement from the probe that answered
+    double one_lookup_share = 0.0;  // of the rays
     double unknown_share = 0.0;
-    std::array<double, 9> share_by_tries{};     // of the rays; index: walks, 8 = 8 and more
-    std::array<double, 9> lookups_by_tries{};   // mean of those rays
+    std::array<double, 9> share_by_tries{};    // of the rays; index: walks, 8 = 8 and more
+    std::array<double, 9> lookups_by_tries{};  // mean of those rays
   };
   // By the choice's own selection among the eight of a cell.
   Count by_cell(const TracerChoice& choice, std::span<const StudyRay> rays) const;
-  // By the probe, of all that see the origin, that the ray runs most nearly straight away from: what 9.1 assumes. A walk
-  // that fails is followed by the next best, from where it ended.
+  // By the probe, of all that see the origin, that the ray runs most nearly straight away from: what 9.1 assumes. A
+  // walk that fails is followed by the next best, from where it ended.
   Count by_best_of_all(const TracerChoice& choice, std::span<const StudyRay> rays) const;
 
  private:

@@ -13,11 +13,17 @@ void check(std::span<const double> shape, std::span<const double> measured, std:
 
 }  // namespace
 
-double most_texels_crossed(int side, double angle_rad) { return 8.0 + 0.5 * std::sqrt(5.0) * side * angle_rad; }
+double most_texels_crossed(int side, double angle_rad) {
+  return 8.0 + 0.5 * std::sqrt(5.0) * side * angle_rad;
+}
 
-double flat_shape(int side) { return side; }
+double flat_shape(int side) {
+  return side;
+}
 
-double hierarchical_shape(int side, double angle_rad) { return std::log2(static_cast<double>(side)) * (1.0 + angle_rad); }
+double hierarchical_shape(int side, double angle_rad) {
+  return std::log2(static_cast<double>(side)) * (1.0 + angle_rad);
+}
 
 double fitted_factor(std::span<const double> shape, std::span<const double> measured) {
   check(shape, measured, 1);

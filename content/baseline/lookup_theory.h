@@ -6,9 +6,9 @@
 
 namespace probewalk {
 
-// A ray sweeps at most the angle between its displacement from the probe and its direction (figure 9.1): no march through
-// an octahedral map of side^2 texels reads more texels than this. The rate is greatest at the octahedron's vertices,
-// sqrt(5) / 2 * side a radian; a texel cut by the border of two octants counts twice.
+// A ray sweeps at most the angle between its displacement from the probe and its direction (figure 9.1): no march
+// through an octahedral map of side^2 texels reads more texels than this. The rate is greatest at the octahedron's
+// vertices, sqrt(5) / 2 * side a radian; a texel cut by the border of two octants counts twice.
 double most_texels_crossed(int side, double angle_rad);
 
 // Texel by texel: sqrt(r) with r = side^2 texels.

@@ -31,7 +31,9 @@ DeviceProbe placeholder_probe(glm::dvec3 position_m) {
   return build_device_probe(map);
 }
 
-glm::dvec3 cube_corner(int k) { return {k & 1, k >> 1 & 1, k >> 2}; }
+glm::dvec3 cube_corner(int k) {
+  return {k & 1, k >> 1 & 1, k >> 2};
+}
 
 ProbeSet cube_probes() {
   ProbeGrid grid;
@@ -60,7 +62,8 @@ double square_score(int first, glm::dvec2 origin, glm::dvec2 d, glm::dvec2 corne
 
 std::array<int, 4> square_order(int first, glm::dvec2 origin, glm::dvec2 unit_direction) {
   std::array<double, 4> score{};
-  for (std::size_t k = 0; k < 4; ++k) score[k] = square_score(first, origin, unit_direction, glm::dvec2(kSquareCorners[k]));
+  for (std::size_t k = 0; k < 4; ++k)
+    score[k] = square_score(first, origin, unit_direction, glm::dvec2(kSquareCorners[k]));
   std::array<int, 4> order{0, 1, 2, 3};
   std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
     return score[static_cast<std::size_t>(a)] > score[static_cast<std::size_t>(b)];
@@ -77,15 +80,21 @@ std::vector<OrderSector> square_sectors(int first, glm::dvec2 origin) {
   std::vector<double> borders;
   std::vector<std::array<int, 4>> orders;
   for (int k = 0; k < kCoarse; ++k) {
-    double low = angle_of(k), high = angle_of(k + 1);
-    const auto before = order_at(low), after = order_at(high);
-    if (before == after) continue;
-    while (high - low > 1e-10) {
-      const double middle = 0.5 * (low + high);
-      (order_at(middle) == before ? low : high) = middle;
+    double start = angle_of(k);
+    auto before = order_at(start);
+    const auto after = order_at(angle_of(k + 1));
+    // A step may hold several borders.
+    while (before != after) {
+      double low = start, high = angle_of(k + 1);
+      while (high - low > 1e-10) {
+        const double middle = 0.5 * (low + high);
+        (order_at(middle) == before ? low : high) = middle;
+      }
+      start = high;
+      before = order_at(high);
+      borders.push_back(high);
+      orders.push_back(before);
     }
-    borders.push_back(high);
-    orders.push_back(after);
   }
   std::vector<OrderSector> sectors;
   if (borders.empty()) return {{0.0, kTurn, order_at(angle_of(0))}};
@@ -98,16 +107,18 @@ std::vector<OrderSector> square_sectors(int first, glm::dvec2 origin) {
 
 CubeOrdering::CubeOrdering() : probes_(cube_probes()) {}
 
-std::array<int, 8> CubeOrdering::order(const SelectionRules& rules, glm::dvec3 origin, glm::dvec3 unit_direction) const {
-  const f32::CandidateList list = f32::cell_candidates(probes_.grid(), default_dials(1.0), rules, glm::vec3(origin),
-                                                       glm::vec3(unit_direction));
+std::array<int, 8> CubeOrdering::order(const SelectionRules& rules, glm::dvec3 origin,
+                                       glm::dvec3 unit_direction) const {
+  const f32::CandidateList list =
+      f32::cell_candidates(probes_.grid(), default_dials(1.0), rules, glm::vec3(origin), glm::vec3(unit_direction));
   if (list.count != 8) throw std::logic_error("a cell with eight probes has other than eight candidates");
   std::array<int, 8> order{};
   std::copy_n(list.probe, 8, order.begin());
   return order;
 }
 
-OrderStatistics order_statistics(const CubeOrdering& cube, const SelectionRules& rules, glm::dvec3 origin, int directions) {
+OrderStatistics order_statistics(const CubeOrdering& cube, const SelectionRules& rules, glm::dvec3 origin,
+                                 int directions) {
   OrderStatistics statistics;
   std::set<std::array<int, 8>> seen;
   for (int k = 0; k < directions; ++k) {

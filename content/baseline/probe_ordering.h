@@ -14,8 +14,8 @@ namespace probewalk {
 // Corners of the square [-1, 1]^2 in the numbering of figure 6.1: clockwise from the lower left.
 inline constexpr std::array<glm::ivec2, 4> kSquareCorners{glm::ivec2{-1, -1}, {-1, 1}, {1, 1}, {1, -1}};
 
-// The corners by falling score of a ray from `origin` inside the square. `first` is one of kFirst...; the scores are those
-// of tracer.h in two dimensions.
+// The corners by falling score of a ray from `origin` inside the square. `first` is one of kFirst...; the scores are
+// those of tracer.h in two dimensions.
 std::array<int, 4> square_order(int first, glm::dvec2 origin, glm::dvec2 unit_direction);
 
 // Directions from_rad .. to_rad (counter-clockwise from +x) that share an order.
@@ -41,11 +41,12 @@ class CubeOrdering {
 struct OrderStatistics {
   std::array<double, 8> first_share{};  // of the directions in which the corner is first
   int distinct_orders = 0;
-  double first_cosine = 0.0;      // mean cosine between the ray and the displacement from its first probe
-  double second_turn_rad = 0.0;   // mean angle at the origin between its first and its second probe
-  double corners_moved = 0.0;     // mean number of coordinates in which probes asked one after the other differ
+  double first_cosine = 0.0;     // mean cosine between the ray and the displacement from its first probe
+  double second_turn_rad = 0.0;  // mean angle at the origin between its first and its second probe
+  double corners_moved = 0.0;    // mean number of coordinates in which probes asked one after the other differ
 };
-OrderStatistics order_statistics(const CubeOrdering& cube, const SelectionRules& rules, glm::dvec3 origin, int directions);
+OrderStatistics order_statistics(const CubeOrdering& cube, const SelectionRules& rules, glm::dvec3 origin,
+                                 int directions);
 
 // Direction k of n spread evenly over the sphere (a spherical Fibonacci lattice), unit length.
 glm::dvec3 spread_direction(int k, int n);

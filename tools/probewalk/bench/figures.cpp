@@ -29,7 +29,8 @@ look-up is one dependent read of a pyramid's node, a cell with its words, or a m
 std::string page(const std::vector<Figure>& figures) {
   std::string html = kPageHead;
   html += "<nav>";
-  for (const Figure& figure : figures) html += fmt::format("<a href=\"#{}\">{}</a>", figure.file, escaped(figure.title));
+  for (const Figure& figure : figures)
+    html += fmt::format("<a href=\"#{}\">{}</a>", figure.file, escaped(figure.title));
   html += "</nav>";
   for (const Figure& figure : figures) {
     fmt::format_to(std::back_inserter(html), "<h2 id=\"{}\">{}</h2>", figure.file, escaped(figure.title));
@@ -45,7 +46,8 @@ std::string page(const std::vector<Figure>& figures) {
 void write_figures(const std::filesystem::path& folder, const FigureOptions& options, Progress& progress) {
   if (options.greatest_side < 128 || options.greatest_side > 8192 ||
       !std::has_single_bit(static_cast<unsigned>(options.greatest_side))) {
-    throw BadUsage(fmt::format("figures of maps up to {} texels a side; give a power of two from 128 to 8192", options.greatest_side));
+    throw BadUsage(fmt::format("figures of maps up to {} texels a side; give a power of two from 128 to 8192",
+                               options.greatest_side));
   }
   if (options.rays < 100) throw BadUsage(fmt::format("figures from {} rays a point; give 100 or more", options.rays));
   if (options.most_per_axis < 2 || options.most_per_axis > 16) {

@@ -1,5 +1,5 @@
-// The figures of `probewalk bench --figures`: the probe-ordering regions of the thesis's chapter 6, and the predictions of
-// its chapter 9 beside what was counted. On procedural scenes and maps of geometry alone; no pack is needed.
+// The figures of `probewalk bench --figures`: the probe-ordering regions of the thesis's chapter 6, and the predictions
+// of its chapter 9 beside what was counted. On procedural scenes and maps of geometry alone; no pack is needed.
 #pragma once
 
 #include <filesystem>
@@ -22,14 +22,15 @@ void write_figures(const std::filesystem::path& folder, const FigureOptions& opt
 
 // A finished picture and what is to be seen in it.
 struct Figure {
-  std::string file;   // without .svg; several pictures are numbered
-  std::string title;  // plain text
+  std::string file;               // without .svg; several pictures are numbered
+  std::string title;              // plain text
   std::vector<std::string> text;  // paragraphs of plain text
   std::vector<std::string> svgs;
   std::string table_html;  // "" = none
 };
 
 std::vector<Figure> ordering_figures();
-std::vector<Figure> lookup_figures(const std::filesystem::path& scratch, const FigureOptions& options, Progress& progress);
+std::vector<Figure> lookup_figures(const std::filesystem::path& scratch, const FigureOptions& options,
+                                   Progress& progress);
 
 }  // namespace probewalk::bench

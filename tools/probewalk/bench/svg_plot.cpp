@@ -9,7 +9,7 @@
 namespace probewalk::bench {
 namespace {
 
-constexpr double kWidth = 960, kHeight = 500, kLeft = 74, kRight = 300, kTop = 44, kBottom = 62;
+constexpr double kWidth = 1040, kHeight = 500, kLeft = 74, kRight = 380, kTop = 44, kBottom = 62;
 
 // A round step that cuts `range` into 3 to 8 parts.
 double nice_step(double range) {
@@ -79,11 +79,20 @@ std::string escaped(std::string_view text) {
   std::string out;
   for (const char c : text) {
     switch (c) {
-      case '&': out += "&amp;"; break;
-      case '<': out += "&lt;"; break;
-      case '>': out += "&gt;"; break;
-      case '"': out += "&quot;"; break;
-      default: out += c;
+      case '&':
+        out += "&amp;";
+        break;
+      case '<':
+        out += "&lt;";
+        break;
+      case '>':
+        out += "&gt;";
+        break;
+      case '"':
+        out += "&quot;";
+        break;
+      default:
+        out += c;
     }
   }
   return out;
@@ -99,21 +108,27 @@ std::string line_plot_svg(const LinePlot& plot) {
       "role=\"img\" aria-label=\"{}\"><rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>",
       kWidth, kHeight, escaped(plot.title));
   const auto out = std::back_inserter(svg);
-  fmt::format_to(out, "<text x=\"{}\" y=\"24\" font-size=\"16\" font-weight=\"bold\">{}</text>", x0, escaped(plot.title));
+  fmt::format_to(out, "<text x=\"{}\" y=\"24\" font-size=\"16\" font-weight=\"bold\">{}</text>", x0,
+                 escaped(plot.title));
   for (const double tick : ticks_of(plot.x, x)) {
-    fmt::format_to(out, "<path d=\"M{0:.1f} {1}V{2}\" stroke=\"#e4e4e4\"/><text x=\"{0:.1f}\" y=\"{3}\" text-anchor=\"middle\">{4:g}</text>",
+    fmt::format_to(out,
+                   "<path d=\"M{0:.1f} {1}V{2}\" stroke=\"#e4e4e4\"/><text x=\"{0:.1f}\" y=\"{3}\" "
+                   "text-anchor=\"middle\">{4:g}</text>",
                    px(tick), y0, y1, y0 + 18, tick);
   }
   for (const double tick : ticks_of(plot.y, y)) {
-    fmt::format_to(out, "<path d=\"M{1} {0:.1f}H{2}\" stroke=\"#e4e4e4\"/><text x=\"{3}\" y=\"{4:.1f}\" text-anchor=\"end\">{5:g}</text>",
+    fmt::format_to(out,
+                   "<path d=\"M{1} {0:.1f}H{2}\" stroke=\"#e4e4e4\"/><text x=\"{3}\" y=\"{4:.1f}\" "
+                   "text-anchor=\"end\">{5:g}</text>",
                    py(tick), x0, x1, x0 - 7, py(tick) + 4.5, tick);
   }
   fmt::format_to(out, "<path d=\"M{} {}V{}H{}\" fill=\"none\" stroke=\"#444444\"/>", x0, y1, y0, x1);
-  fmt::format_to(out, "<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">{}</text>", 0.5 * (x0 + x1), kHeight - 16, escaped(plot.x.label));
-  fmt::format_to(out, "<text transform=\"translate(18 {}) rotate(-90)\" text-anchor=\"middle\">{}</text>", 0.5 * (y0 + y1),
-                 escaped(plot.y.label));
-  fmt::format_to(out, "<clipPath id=\"area\"><rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"/></clipPath>", x0 - 5, y1 - 5,
-                 x1 - x0 + 10, y0 - y1 + 10);
+  fmt::format_to(out, "<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">{}</text>", 0.5 * (x0 + x1), kHeight - 16,
+                 escaped(plot.x.label));
+  fmt::format_to(out, "<text transform=\"translate(18 {}) rotate(-90)\" text-anchor=\"middle\">{}</text>",
+                 0.5 * (y0 + y1), escaped(plot.y.label));
+  fmt::format_to(out, "<clipPath id=\"area\"><rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"/></clipPath>", x0 - 5,
+                 y1 - 5, x1 - x0 + 10, y0 - y1 + 10);
   double legend_y = y1 + 8;
   for (const Curve& curve : plot.curves) {
     std::string path;
@@ -122,16 +137,20 @@ std::string line_plot_svg(const LinePlot& plot) {
       fmt::format_to(std::back_inserter(path), "{}{:.1f} {:.1f}", path.empty() ? "M" : "L", px(point.x), py(point.y));
     }
     const char* dashes = curve.dashed ? " stroke-dasharray=\"6 4\"" : "";
-    fmt::format_to(out, "<g clip-path=\"url(#area)\"><path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"{}\"{}/>", path,
-                   curve.colour, curve.dashed ? 1.6 : 2.2, dashes);
+    fmt::format_to(out,
+                   "<g clip-path=\"url(#area)\"><path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"{}\"{}/>",
+                   path, curve.colour, curve.dashed ? 1.6 : 2.2, dashes);
     for (const glm::dvec2& point : curve.points) {
       if (!curve.markers || !shown(point, plot)) continue;
-      fmt::format_to(out, "<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"3.4\" fill=\"{}\"/>", px(point.x), py(point.y), curve.colour);
+      fmt::format_to(out, "<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"3.4\" fill=\"{}\"/>", px(point.x), py(point.y),
+                     curve.colour);
     }
     svg += "</g>";
     if (curve.name.empty()) continue;
-    fmt::format_to(out, "<path d=\"M{} {}h30\" stroke=\"{}\" stroke-width=\"2.2\"{}/>", x1 + 20, legend_y - 4.5, curve.colour, dashes);
-    if (curve.markers) fmt::format_to(out, "<circle cx=\"{}\" cy=\"{}\" r=\"3.4\" fill=\"{}\"/>", x1 + 35, legend_y - 4.5, curve.colour);
+    fmt::format_to(out, "<path d=\"M{} {}h30\" stroke=\"{}\" stroke-width=\"2.2\"{}/>", x1 + 20, legend_y - 4.5,
+                   curve.colour, dashes);
+    if (curve.markers)
+      fmt::format_to(out, "<circle cx=\"{}\" cy=\"{}\" r=\"3.4\" fill=\"{}\"/>", x1 + 35, legend_y - 4.5, curve.colour);
     fmt::format_to(out, "<text x=\"{}\" y=\"{}\">{}</text>", x1 + 58, legend_y, escaped(curve.name));
     legend_y += 21;
   }

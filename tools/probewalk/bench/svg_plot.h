@@ -14,7 +14,7 @@ inline constexpr std::string_view kBlack = "#222222", kOrange = "#e69f00", kSkyB
                                   kGrey = "#888888";
 
 struct Curve {
-  std::string name;  // in the legend; "" = not there
+  std::string name;                // in the legend; "" = not there
   std::vector<glm::dvec2> points;  // points that a logarithmic axis cannot show are left out
   std::string_view colour = kBlack;
   bool dashed = false;  // predictions
@@ -24,7 +24,7 @@ struct Curve {
 struct PlotAxis {
   std::string label;  // with the unit
   bool logarithmic = false;
-  std::vector<double> ticks;  // none = chosen
+  std::vector<double> ticks;     // none = chosen
   double low = 0.0, high = 0.0;  // equal = chosen from the curves
 };
 
