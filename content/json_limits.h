@@ -1,6 +1,6 @@
-// How much memory and recursion a JSON text would take, found before it is parsed: "[],[],[],..." becomes twenty times its
-// size. A scan of its own, as the callback of nlohmann's parser looks through a list again after each of its objects, so
-// that a list of a million objects would take minutes.
+// How much memory and recursion a JSON text would take, found before it is parsed: "[],[],[],..." becomes twenty times
+// its size. A scan of its own, as the callback of nlohmann's parser looks through a list again after each of its
+// objects, so that a list of a million objects would take minutes.
 #pragma once
 
 #include <fmt/format.h>
@@ -18,7 +18,8 @@ struct JsonLimits {
   int depth = 0;
 };
 
-// What of the text is beyond the limits, as the end of a sentence; "" when nothing is. Says nothing about its being JSON.
+// What of the text is beyond the limits, as the end of a sentence; "" when nothing is. Says nothing about its being
+// JSON.
 inline std::string beyond_json_limits(std::string_view text, const JsonLimits& limits) {
   std::uint64_t commas = 0, nested = 0;
   int depth = 0, deepest = 0;

@@ -1,16 +1,15 @@
 // The trace's distances to a depth attachment that a display's compositor can reproject with. A pass of its own, drawn
-// only for displays that ask for depth; one draw a view, as the resolve.
+// only for displays that ask for depth.
 #pragma once
 
 #include <volk.h>
 
-#include <cstdint>
 #include <span>
 
 #include "render/device.h"
 #include "render/frame_target.h"
+#include "render/full_screen_pass.h"
 #include "render/image.h"
-#include "render/pipeline.h"
 
 namespace probewalk {
 
@@ -26,9 +25,7 @@ class DepthPass {
               std::span<const VkImageView> layer_views) const;
 
  private:
-  std::uint32_t views_;
-  StorageImageSet images_;
-  Pipeline pipeline_;
+  FullScreenPass pass_;
 };
 
 }  // namespace probewalk

@@ -1,16 +1,14 @@
-// Linear radiance to what the display shows: exposure, tone curve, fade, dither. One draw a view: multiview
-// gains nothing for one triangle, and llvmpipe of Mesa 25.0 crashes on it where the device is otherwise sound.
+// Linear radiance to what the display shows: exposure, tone curve, fade, dither.
 #pragma once
 
 #include <volk.h>
 
-#include <cstdint>
 #include <span>
 
 #include "render/device.h"
 #include "render/frame_target.h"
+#include "render/full_screen_pass.h"
 #include "render/image.h"
-#include "render/pipeline.h"
 
 namespace probewalk {
 
@@ -25,9 +23,7 @@ class Resolve {
               std::span<const VkImageView> layer_views) const;
 
  private:
-  std::uint32_t views_;
-  StorageImageSet images_;
-  Pipeline pipeline_;
+  FullScreenPass pass_;
 };
 
 }  // namespace probewalk

@@ -41,10 +41,11 @@ void open_mirrored(Display& display, const DisplayOptions& options, const FloorM
   const ShownEyes shown = options.window_eyes.value_or(ShownEyes::kLeft);
   if (shown != ShownEyes::kNone) {
     try {
-      const VkExtent2D size = window_size({options.eye_size.width > 0 ? options.eye_size : kMirrorSize, shown, options.eyes});
+      const VkExtent2D size =
+          window_size({options.eye_size.width > 0 ? options.eye_size : kMirrorSize, shown, options.eyes});
       display.window = std::make_unique<Window>("Probewalk: mirror", size);
-      display.device = std::make_unique<Device>(with_window(display.runtime->device_hooks(), display.window->device_hooks()),
-                                                options.device);
+      display.device = std::make_unique<Device>(
+          with_window(display.runtime->device_hooks(), display.window->device_hooks()), options.device);
       display.source = std::make_unique<OpenXrSource>(*display.runtime, *display.device, floor, start, headset);
       const FrameSource& source = *display.source;
       display.mirror = std::make_unique<Mirror>(*display.window, *display.device, source.view_extent(),

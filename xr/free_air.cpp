@@ -50,7 +50,8 @@ bool FreeAir::is_free(const glm::dvec3& point_m) const {
   bool any_known = false;
   for (int corner = 0; corner < 8; ++corner) {
     const glm::ivec3 v = glm::min(cell + glm::ivec3(corner & 1, corner >> 1 & 1, corner >> 2), grid_.dims - 1);
-    const Sight& sight = sights_[grid_.probe[static_cast<std::size_t>((v.z * grid_.dims.y + v.y) * grid_.dims.x + v.x)]];
+    const Sight& sight =
+        sights_[grid_.probe[static_cast<std::size_t>((v.z * grid_.dims.y + v.y) * grid_.dims.x + v.x)]];
     if (sight.n == 0) continue;
     any_known = true;
     if (sees(sight, point_m)) return true;

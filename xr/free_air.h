@@ -1,5 +1,5 @@
-// Whether a point lies in the open or inside something solid, as the probes around it see it: a point that no probe near
-// it sees is in a wall, or where no picture could be drawn anyway.
+// Whether a point lies in the open or inside something solid, as the probes around it see it: a point that no probe
+// near it sees is in a wall, or where no picture could be drawn anyway.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +19,8 @@ class FreeAir {
 
   // Takes what a probe sees, from the words of its coarsest level. Any thread.
   void add(std::uint32_t probe, const DeviceProbe& words);
-  // Any thread. Of the probes that serve the grid cell around the point, one that is known must see as far as the point.
+  // Any thread. Of the probes that serve the grid cell around the point, one that is known must see as far as the
+  // point.
   bool is_free(const glm::dvec3& point_m) const;
 
  private:

@@ -22,7 +22,8 @@ namespace probewalk {
 
 class Mirror {
  public:
-  // `window` and `device` (made with the window's hooks) outlive the mirror. `eye` and `views` are those of the headset.
+  // `window` and `device` (made with the window's hooks) outlive the mirror. `eye` and `views` are those of the
+  // headset.
   Mirror(Window& window, const Device& device, VkExtent2D eye, std::uint32_t views, VkFormat format, ShownEyes shown);
   ~Mirror();
   Mirror(const Mirror&) = delete;

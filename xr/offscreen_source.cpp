@@ -17,8 +17,9 @@ OffscreenSource::OffscreenSource(const Device& device, const Pose& head, const O
       start_ns_(now_ns()) {}
 
 std::string OffscreenSource::description() const {
-  return fmt::format("no display, {}x{} an eye, {} of {:.3g} Hz", options_.eye_size.width,
-                     options_.eye_size.height, options_.in_real_time ? "at the pace" : "a fixed clock", 1e9 / static_cast<double>(options_.period_ns));
+  return fmt::format("no display, {}x{} an eye, {} of {:.3g} Hz", options_.eye_size.width, options_.eye_size.height,
+                     options_.in_real_time ? "at the pace" : "a fixed clock",
+                     1e9 / static_cast<double>(options_.period_ns));
 }
 
 FrameTiming OffscreenSource::wait() {

@@ -92,7 +92,8 @@ OpenXrInput::Events OpenXrInput::poll(XrSession session, XrSpace space, XrTime t
     if (!(select.isActive && select.changedSinceLastSync && !select.currentState)) continue;
     XrSpaceLocation aim{XR_TYPE_SPACE_LOCATION};
     if (result = xrLocateSpace(hand.aim.get(), space, time, &aim); XR_FAILED(result)) return events;
-    constexpr XrSpaceLocationFlags kValid = XR_SPACE_LOCATION_POSITION_VALID_BIT | XR_SPACE_LOCATION_ORIENTATION_VALID_BIT;
+    constexpr XrSpaceLocationFlags kValid =
+        XR_SPACE_LOCATION_POSITION_VALID_BIT | XR_SPACE_LOCATION_ORIENTATION_VALID_BIT;
     if ((aim.locationFlags & kValid) != kValid) continue;
     const auto& q = aim.pose.orientation;
     events.teleport = Ray{{aim.pose.position.x, aim.pose.position.y, aim.pose.position.z},

@@ -109,7 +109,9 @@ Function OpenXrInstance::function(const char* name) const {
   return reinterpret_cast<Function>(pointer);
 }
 
-bool OpenXrInstance::has(const char* extension) const { return std::ranges::find(enabled_, extension) != enabled_.end(); }
+bool OpenXrInstance::has(const char* extension) const {
+  return std::ranges::find(enabled_, extension) != enabled_.end();
+}
 
 DeviceHooks OpenXrInstance::device_hooks() const {
   // The specification wants the requirements asked for before an instance or device is made.
@@ -118,7 +120,8 @@ DeviceHooks OpenXrInstance::device_hooks() const {
                                                                                                     &requirements),
            "xrGetVulkanGraphicsRequirements2KHR");
   DeviceHooks hooks;
-  hooks.create_instance = [this](PFN_vkGetInstanceProcAddr loader, const VkInstanceCreateInfo& create, VkInstance* out) {
+  hooks.create_instance = [this](PFN_vkGetInstanceProcAddr loader, const VkInstanceCreateInfo& create,
+                                 VkInstance* out) {
     XrVulkanInstanceCreateInfoKHR info{XR_TYPE_VULKAN_INSTANCE_CREATE_INFO_KHR};
     info.systemId = system_;
     info.pfnGetInstanceProcAddr = loader;

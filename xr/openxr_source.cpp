@@ -73,8 +73,8 @@ void OpenXrSource::create_session() {
 }
 
 void OpenXrSource::create_space(bool seated) {
-  const auto offered =
-      enumerate_xr<XrReferenceSpaceType>("xrEnumerateReferenceSpaces", {}, [&](auto capacity, auto* count, auto* items) {
+  const auto offered = enumerate_xr<XrReferenceSpaceType>(
+      "xrEnumerateReferenceSpaces", {}, [&](auto capacity, auto* count, auto* items) {
         return xrEnumerateReferenceSpaces(session_.get(), capacity, count, items);
       });
   const auto has = [&](XrReferenceSpaceType type) { return std::ranges::find(offered, type) != offered.end(); };
@@ -97,8 +97,10 @@ void OpenXrSource::create_space(bool seated) {
 
 void OpenXrSource::create_swapchains(VkExtent2D wanted) {
   const auto configurations = enumerate_xr<XrViewConfigurationView>(
-      "xrEnumerateViewConfigurationViews", {XR_TYPE_VIEW_CONFIGURATION_VIEW}, [&](auto capacity, auto* count, auto* items) {
-        return xrEnumerateViewConfigurationViews(instance_.handle(), instance_.system(), kStereo, capacity, count, items);
+      "xrEnumerateViewConfigurationViews", {XR_TYPE_VIEW_CONFIGURATION_VIEW},
+      [&](auto capacity, auto* count, auto* items) {
+        return xrEnumerateViewConfigurationViews(instance_.handle(), instance_.system(), kStereo, capacity, count,
+                                                 items);
       });
   // One array image for all views: as large as the largest of them.
   VkExtent2D most{~0u, ~0u};
@@ -117,7 +119,8 @@ void OpenXrSource::create_swapchains(VkExtent2D wanted) {
 
   const auto modes = enumerate_xr<XrEnvironmentBlendMode>(
       "xrEnumerateEnvironmentBlendModes", {}, [&](auto capacity, auto* count, auto* items) {
-        return xrEnumerateEnvironmentBlendModes(instance_.handle(), instance_.system(), kStereo, capacity, count, items);
+        return xrEnumerateEnvironmentBlendModes(instance_.handle(), instance_.system(), kStereo, capacity, count,
+                                                items);
       });
   if (std::ranges::find(modes, XR_ENVIRONMENT_BLEND_MODE_OPAQUE) == modes.end()) blend_mode_ = modes.at(0);
 

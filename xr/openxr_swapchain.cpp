@@ -21,7 +21,8 @@ OpenXrSwapchain::OpenXrSwapchain(XrSession session, const OpenXrSwapchainOptions
   info.mipCount = 1;
   check_xr(xrCreateSwapchain(session, &info, handle_.out()), "xrCreateSwapchain");
   const auto images = enumerate_xr<XrSwapchainImageVulkan2KHR>(
-      "xrEnumerateSwapchainImages", {XR_TYPE_SWAPCHAIN_IMAGE_VULKAN2_KHR}, [&](auto capacity, auto* count, auto* items) {
+      "xrEnumerateSwapchainImages", {XR_TYPE_SWAPCHAIN_IMAGE_VULKAN2_KHR},
+      [&](auto capacity, auto* count, auto* items) {
         return xrEnumerateSwapchainImages(handle_.get(), capacity, count,
                                           reinterpret_cast<XrSwapchainImageBaseHeader*>(items));
       });

@@ -28,7 +28,9 @@ struct Place {
   const std::string& source;
   std::size_t line;
 
-  [[noreturn]] void refuse(const std::string& why) const { throw BadInput(fmt::format("{}:{}: {}", source, line, why)); }
+  [[noreturn]] void refuse(const std::string& why) const {
+    throw BadInput(fmt::format("{}:{}: {}", source, line, why));
+  }
 };
 
 template <int kCount>
@@ -163,7 +165,8 @@ Path parse_path(const std::string& text, const std::string& source) {
       return depth < 8;
     };
     const json object = json::parse(line, shallow, /*allow_exceptions=*/false);
-    if (object.is_discarded()) place.refuse("not JSON; a path has one object {t_s, position_m, orientation_xyzw} a line");
+    if (object.is_discarded())
+      place.refuse("not JSON; a path has one object {t_s, position_m, orientation_xyzw} a line");
     PathPose pose = pose_from(object, place);
     if (!path.poses.empty()) {
       if (pose.t_s <= path.poses.back().t_s) place.refuse(fmt::format("time {} s does not rise", pose.t_s));
@@ -173,7 +176,8 @@ Path parse_path(const std::string& text, const std::string& source) {
     }
     path.poses.push_back(std::move(pose));
   }
-  if (path.poses.empty()) throw BadInput(source + ": the path is empty; record one with `probewalk walk --record FILE`");
+  if (path.poses.empty())
+    throw BadInput(source + ": the path is empty; record one with `probewalk walk --record FILE`");
   return path;
 }
 
@@ -207,8 +211,10 @@ PathWriter::PathWriter(std::filesystem::path file) : file_(std::move(file)), tem
   temporary_ += ".part";
   out_.open(temporary_, std::ios::binary | std::ios::trunc);
   if (!out_) {
-    throw BadInput(fmt::format("{}: the path cannot be written here ({}); name a file in a folder that exists and can be "
-                               "written to", file_.string(), std::generic_category().message(errno)));
+    throw BadInput(
+        fmt::format("{}: the path cannot be written here ({}); name a file in a folder that exists and can be "
+                    "written to",
+                    file_.string(), std::generic_category().message(errno)));
   }
 }
 

@@ -27,18 +27,20 @@ struct Path {
   std::vector<PathPose> poses;  // never empty; times rise strictly
 
   double duration_s() const { return poses.back().t_s - poses.front().t_s; }
-  // The pose `t_s` after the first one, interpolated; clamped to the ends. At a pose's own time it is that pose exactly.
+  // The pose `t_s` after the first one, interpolated; clamped to the ends. At a pose's own time it is that pose
+  // exactly.
   PathPose at(double t_s) const;
 };
 
 // Refuses non-finite numbers, coordinates beyond the packs' limit, times that do not rise, orientations that are not
-// unit quaternions (to 1 %), fields of view that are empty or reach 90 degrees to a side. Throws BadInput with the line.
+// unit quaternions (to 1 %), fields of view that are empty or reach 90 degrees to a side. Throws BadInput with the
+// line.
 Path parse_path(const std::string& text, const std::string& source);
 Path read_path(const std::filesystem::path& file);
 std::string path_line(const PathPose& pose);
 
-// Writes poses as they come to a temporary file; finish() gives it its name. Without finish() nothing stays. A disk that
-// fills up stops nobody's walk: finish() keeps the poses that fitted, then throws BadInput.
+// Writes poses as they come to a temporary file; finish() gives it its name. Without finish() nothing stays. A disk
+// that fills up stops nobody's walk: finish() keeps the poses that fitted, then throws BadInput.
 class PathWriter {
  public:
   explicit PathWriter(std::filesystem::path file);
@@ -54,8 +56,8 @@ class PathWriter {
   bool is_finished_ = false;
 };
 
-// A walk through key poses at `speed_m_s`, which slows down where the view turns faster than `turn_rad_s`. Positions and
-// directions are smoothed over about half a metre, so that corners are walked round and not turned on the spot.
+// A walk through key poses at `speed_m_s`, which slows down where the view turns faster than `turn_rad_s`. Positions
+// and directions are smoothed over about half a metre, so that corners are walked round and not turned on the spot.
 Path path_of_tour(const std::vector<Pose>& tour, double speed_m_s = 1.0, double turn_rad_s = 1.0);
 
 glm::dquat orientation_of(double yaw_rad, double pitch_rad);

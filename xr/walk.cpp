@@ -36,7 +36,8 @@ std::optional<std::uint64_t> frame_limit(const WalkOptions& options, bool offscr
   return path ? frames_in(path->duration_s()) : kTourFrames;
 }
 
-WalkView view_of(const Manifest& manifest, bool offscreen, std::optional<Path> path, std::optional<std::uint64_t> frames) {
+WalkView view_of(const Manifest& manifest, bool offscreen, std::optional<Path> path,
+                 std::optional<std::uint64_t> frames) {
   if (path) return WalkView::of_path(std::move(*path));
   if (offscreen) return WalkView::of_tour(path_of_tour(manifest.tour), frames.value_or(kTourFrames));
   return {};
@@ -143,9 +144,9 @@ void Walk::begin(std::optional<Path> path) {
 
 void Walk::note_display() const {
   const FrameSource& source = *display_->source;
-  progress_.note(display_->reason.empty()
-                     ? fmt::format("display: {}: {}", source.kind(), source.description())
-                     : fmt::format("display: {}: {} (because {})", source.kind(), source.description(), display_->reason));
+  progress_.note(display_->reason.empty() ? fmt::format("display: {}: {}", source.kind(), source.description())
+                                          : fmt::format("display: {}: {} (because {})", source.kind(),
+                                                        source.description(), display_->reason));
 }
 
 LegEnd Walk::walk_leg() {

@@ -39,11 +39,13 @@ WalkLeg::WalkLeg(const WalkOptions& options, const Pack& pack, const Display& di
       watch_(watch),
       progress_(progress),
       settle_(options.settle.value_or(source_.kind() == "offscreen" && !books.left_ns)),
-      rooms_(pack, *display.device, {options.budget_bytes, options.loader_threads, options.report.has_value(), !settle_}, progress),
-      renderer_(*display.device, rooms_.store(),
-                {.tracer = {.extent_px = source_.view_extent(), .views = source_.view_count(), .samples = options.samples},
-                 .target_format = source_.color_format(),
-                 .depth_format = source_.depth_format()}),
+      rooms_(pack, *display.device,
+             {options.budget_bytes, options.loader_threads, options.report.has_value(), !settle_}, progress),
+      renderer_(
+          *display.device, rooms_.store(),
+          {.tracer = {.extent_px = source_.view_extent(), .views = source_.view_count(), .samples = options.samples},
+           .target_format = source_.color_format(),
+           .depth_format = source_.depth_format()}),
       book_(books.ledger) {
   settings_.trace = default_dials(pack.manifest().radiance_scale);
   settings_.exposure = exposure_from_ev(static_cast<float>(options.exposure_ev.value_or(pack.manifest().exposure_ev)));
@@ -155,8 +157,8 @@ std::vector<ViewPose> WalkLeg::draw(const FrameTiming& timing, FrameRecord& reco
   save_pictures(target);
   if (display_.mirror) display_.mirror->offer(target, record);
   if (books_.recorder) {
-    books_.recorder->add({static_cast<double>(timing.predicted_display_ns - *books_.first_display_ns) * 1e-9, head.position_m,
-                    head.orientation, views});
+    books_.recorder->add({static_cast<double>(timing.predicted_display_ns - *books_.first_display_ns) * 1e-9,
+                          head.position_m, head.orientation, views});
   }
   return views;
 }
@@ -190,7 +192,8 @@ void WalkLeg::note_arrival() {
   change.frame = books_.frame;
   change.gap_ns = now_ns() - *books_.left_ns;
   books_.left_ns.reset();
-  progress_.note(fmt::format("the walk goes on: {}, {:.2f} s later", source_.kind(), static_cast<double>(change.gap_ns) * 1e-9));
+  progress_.note(
+      fmt::format("the walk goes on: {}, {:.2f} s later", source_.kind(), static_cast<double>(change.gap_ns) * 1e-9));
 }
 
 void WalkLeg::take_late_answers() {

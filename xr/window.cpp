@@ -29,9 +29,11 @@ Window::Library::Library() {
 Window::Library::~Library() { glfwTerminate(); }
 
 Window::Window(const std::string& title, VkExtent2D size) {
-  if (glfwVulkanSupported() != GLFW_TRUE) throw NoDevice("no window: no Vulkan driver can show pictures on this display");
+  if (glfwVulkanSupported() != GLFW_TRUE)
+    throw NoDevice("no window: no Vulkan driver can show pictures on this display");
   glfwWindowHint(GLFW_CLIENT_API, GLFW_NO_API);
-  window_ = glfwCreateWindow(static_cast<int>(size.width), static_cast<int>(size.height), title.c_str(), nullptr, nullptr);
+  window_ =
+      glfwCreateWindow(static_cast<int>(size.width), static_cast<int>(size.height), title.c_str(), nullptr, nullptr);
   if (window_ == nullptr) throw NoDevice(fmt::format("no window: {}", glfw_reason()));
   // A key that was pressed and let go between two polls counts all the same: frames may be slow.
   glfwSetInputMode(window_, GLFW_STICKY_KEYS, GLFW_TRUE);

@@ -66,7 +66,8 @@ FrameTiming WindowSource::wait() {
   FrameTiming timing;
   timing.period_ns = pacer_.period_ns();
   timing.predicted_display_ns = frame.predicted_display_ns;
-  const double dt_s = last_display_ns_ == 0 ? 0.0 : static_cast<double>(frame.predicted_display_ns - last_display_ns_) * 1e-9;
+  const double dt_s =
+      last_display_ns_ == 0 ? 0.0 : static_cast<double>(frame.predicted_display_ns - last_display_ns_) * 1e-9;
   last_display_ns_ = frame.predicted_display_ns;
   walker_.advance(input_.wish, input_.run ? kRunSpeed_m_s : kWalkSpeed_m_s, std::min(dt_s, 0.25));
   return timing;

@@ -67,7 +67,8 @@ WindowSwapchain::~WindowSwapchain() {
 
 void WindowSwapchain::choose_format_and_mode() {
   std::uint32_t count = 0;
-  check(vkGetPhysicalDeviceSurfaceFormatsKHR(device_.physical(), surface_, &count, nullptr), "vkGetPhysicalDeviceSurfaceFormatsKHR");
+  check(vkGetPhysicalDeviceSurfaceFormatsKHR(device_.physical(), surface_, &count, nullptr),
+        "vkGetPhysicalDeviceSurfaceFormatsKHR");
   std::vector<VkSurfaceFormatKHR> formats(count);
   check(vkGetPhysicalDeviceSurfaceFormatsKHR(device_.physical(), surface_, &count, formats.data()),
         "vkGetPhysicalDeviceSurfaceFormatsKHR");
@@ -110,9 +111,10 @@ bool WindowSwapchain::recreate(VkExtent2D window) {
     throw NoDevice("no window: the display's images cannot be copied to");
   }
   // The surface's own size where it has one; the window's size may be newer or older by an event.
-  extent_ = can.currentExtent.width != ~0u ? can.currentExtent
-                                           : VkExtent2D{std::clamp(window.width, can.minImageExtent.width, can.maxImageExtent.width),
-                                                        std::clamp(window.height, can.minImageExtent.height, can.maxImageExtent.height)};
+  extent_ = can.currentExtent.width != ~0u
+                ? can.currentExtent
+                : VkExtent2D{std::clamp(window.width, can.minImageExtent.width, can.maxImageExtent.width),
+                             std::clamp(window.height, can.minImageExtent.height, can.maxImageExtent.height)};
   if (extent_.width == 0 || extent_.height == 0) return true;
 
   VkSwapchainCreateInfoKHR info{VK_STRUCTURE_TYPE_SWAPCHAIN_CREATE_INFO_KHR};
@@ -224,7 +226,8 @@ void WindowSwapchain::record(const Slot& slot, VkImage screen, const FrameTarget
   for (const ShownView& shown : layout) {
     VkImageBlit copy{};
     copy.srcSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, shown.view, 1};
-    copy.srcOffsets[1] = {static_cast<std::int32_t>(eyes.extent.width), static_cast<std::int32_t>(eyes.extent.height), 1};
+    copy.srcOffsets[1] = {static_cast<std::int32_t>(eyes.extent.width), static_cast<std::int32_t>(eyes.extent.height),
+                          1};
     copy.dstSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
     copy.dstOffsets[0] = {shown.offset.x, shown.offset.y, 0};
     copy.dstOffsets[1] = {shown.offset.x + static_cast<std::int32_t>(shown.extent.width),

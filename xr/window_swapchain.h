@@ -11,11 +11,12 @@ namespace probewalk {
 
 class WindowSwapchain {
  public:
-  // Some drivers (lavapipe) wait inside vkQueuePresentKHR for the picture: kAfterTheCopy waits before it instead, so that
-  // others who need the queue meanwhile are not held up.
+  // Some drivers (lavapipe) wait inside vkQueuePresentKHR for the picture: kAfterTheCopy waits before it instead, so
+  // that others who need the queue meanwhile are not held up.
   enum class Present { kAtOnce, kAfterTheCopy };
 
-  // Takes the surface over. `slots` copies may be in flight. Throws NoDevice when the surface cannot take sRGB pictures.
+  // Takes the surface over. `slots` copies may be in flight. Throws NoDevice when the surface cannot take sRGB
+  // pictures.
   WindowSwapchain(const Device& device, VkSurfaceKHR surface, std::uint32_t slots, Present present = Present::kAtOnce);
   ~WindowSwapchain();
   WindowSwapchain(const WindowSwapchain&) = delete;

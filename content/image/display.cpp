@@ -39,7 +39,8 @@ ImageRgb8 false_colour(const std::vector<float>& values, int width_px, int heigh
   ImageRgb8 image{width_px, height_px, {}};
   image.rgb.reserve(values.size() * 3);
   for (const float value : values) {
-    const glm::vec3 color = std::isfinite(value) ? glm::mix(kLow, kHigh, std::clamp(value / maximum, 0.0f, 1.0f)) : kNoValue;
+    const glm::vec3 color =
+        std::isfinite(value) ? glm::mix(kLow, kHigh, std::clamp(value / maximum, 0.0f, 1.0f)) : kNoValue;
     for (int c = 0; c < 3; ++c) image.rgb.push_back(static_cast<std::uint8_t>(std::lround(color[c])));
   }
   return image;

@@ -35,7 +35,8 @@ void write_file_atomically(const std::filesystem::path& file, const std::string&
 ImageRgb8 display_transform(const ImageRgbF& image, float exposure_ev);
 
 // Mean FLIP (Andersson et al. 2020, LDR) in [0, 1]; `map` receives the error per pixel when given.
-float flip_mean(const ImageRgb8& reference, const ImageRgb8& test, float pixels_per_degree, std::vector<float>* map = nullptr);
+float flip_mean(const ImageRgb8& reference, const ImageRgb8& test, float pixels_per_degree,
+                std::vector<float>* map = nullptr);
 // Peak signal-to-noise ratio over 8-bit RGB; infinity for equal pictures.
 double psnr_db(const ImageRgb8& a, const ImageRgb8& b);
 // A scalar map as a picture, blue (0) to yellow (maximum); values that are not finite are magenta.

@@ -63,7 +63,8 @@ std::uint64_t chunk_header_bytes(std::size_t section_count) {
 
 void check_chunk_counts(const ChunkCounts& counts, const std::string& source) {
   if (counts.probes == 0 || counts.probes > PackLimits::kProbesPerRoom) {
-    refuse(source, fmt::format("{} probes in one room; 1 to {} are allowed", counts.probes, PackLimits::kProbesPerRoom));
+    refuse(source,
+           fmt::format("{} probes in one room; 1 to {} are allowed", counts.probes, PackLimits::kProbesPerRoom));
   }
   check_side(counts.geometry_n, "geometry", source);
   check_side(counts.radiance_r, "radiance", source);
@@ -142,7 +143,8 @@ ChunkHeader read_chunk_header(std::span<const std::byte> chunk, const std::strin
     }
     const std::uint64_t expected = header.counts.probes * section_bytes_per_probe(section.kind, header.counts);
     if (section.raw_bytes != expected) {
-      refuse(source, fmt::format("section {} claims {} bytes where its counts make {}", kind, section.raw_bytes, expected));
+      refuse(source,
+             fmt::format("section {} claims {} bytes where its counts make {}", kind, section.raw_bytes, expected));
     }
     if (section.codec == ChunkCodec::kRaw && section.stored_bytes != section.raw_bytes) {
       refuse(source, fmt::format("raw section {} stores {} bytes for {}", kind, section.stored_bytes, expected));

@@ -32,7 +32,9 @@ struct ChunkHeader {
 };
 
 // Array lengths of one probe.
-constexpr std::uint64_t vertex_count(const ChunkCounts& c) { return std::uint64_t{c.geometry_n + 1} * (c.geometry_n + 1); }
+constexpr std::uint64_t vertex_count(const ChunkCounts& c) {
+  return std::uint64_t{c.geometry_n + 1} * (c.geometry_n + 1);
+}
 constexpr std::uint64_t straight_edge_count(const ChunkCounts& c) {
   return std::uint64_t{c.geometry_n} * (c.geometry_n + 1);
 }

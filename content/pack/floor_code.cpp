@@ -54,12 +54,16 @@ std::optional<std::vector<FloorNode>> decode_floor_nodes(std::string_view text, 
   if (!compressed) return std::nullopt;
   ZstdStream in(*compressed);
   std::vector<FloorNode> nodes(count);
-  const bool whole =
-      take_column<std::uint32_t>(in, nodes, [](FloorNode& n, std::uint32_t w) { n.ix = std::bit_cast<std::int32_t>(w); }) &&
-      take_column<std::uint32_t>(in, nodes, [](FloorNode& n, std::uint32_t w) { n.iz = std::bit_cast<std::int32_t>(w); }) &&
-      take_column<std::uint32_t>(in, nodes, [](FloorNode& n, std::uint32_t w) { n.floor_m = std::bit_cast<float>(w); }) &&
-      take_column<std::uint32_t>(in, nodes, [](FloorNode& n, std::uint32_t w) { n.headroom_m = std::bit_cast<float>(w); }) &&
-      take_column<std::uint16_t>(in, nodes, [](FloorNode& n, std::uint16_t w) { n.room = w; }) && in.at_end();
+  const bool whole = take_column<std::uint32_t>(
+                         in, nodes, [](FloorNode& n, std::uint32_t w) { n.ix = std::bit_cast<std::int32_t>(w); }) &&
+                     take_column<std::uint32_t>(
+                         in, nodes, [](FloorNode& n, std::uint32_t w) { n.iz = std::bit_cast<std::int32_t>(w); }) &&
+                     take_column<std::uint32_t>(
+                         in, nodes, [](FloorNode& n, std::uint32_t w) { n.floor_m = std::bit_cast<float>(w); }) &&
+                     take_column<std::uint32_t>(
+                         in, nodes, [](FloorNode& n, std::uint32_t w) { n.headroom_m = std::bit_cast<float>(w); }) &&
+                     take_column<std::uint16_t>(in, nodes, [](FloorNode& n, std::uint16_t w) { n.room = w; }) &&
+                     in.at_end();
   if (!whole) return std::nullopt;
   return nodes;
 }

@@ -62,7 +62,8 @@ class Checker {
             PackLimits::kWarnings);
     for (const std::string& warning : m_.warnings) check_text(warning, "a warning");
     for (const std::string& feature : m_.features) {
-      const bool known = std::find(std::begin(kKnownFeatures), std::end(kKnownFeatures), feature) != std::end(kKnownFeatures);
+      const bool known =
+          std::find(std::begin(kKnownFeatures), std::end(kKnownFeatures), feature) != std::end(kKnownFeatures);
       if (!known) {
         throw BadInput(fmt::format("{}: feature \"{}\" is not known to this probewalk; update probewalk or bake the "
                                    "pack again", source_, feature.substr(0, 64)));
@@ -108,7 +109,8 @@ class Checker {
       check_text(room.name, "a room's name");
       require(is_bounds(room.bounds), "room {}: bounds are empty or out of range", room.id);
       require(in_range(room.origin_m), "room {}: origin is out of range", room.id);
-      require(room.first_probe == probes, "room {}: its probes begin at {}, not at {}", room.id, room.first_probe, probes);
+      require(room.first_probe == probes, "room {}: its probes begin at {}, not at {}", room.id, room.first_probe,
+              probes);
       require(room.probe_count <= PackLimits::kProbesPerRoom, "room {}: {} probes, at most {}", room.id,
               room.probe_count, PackLimits::kProbesPerRoom);
       require(room.levels.size() <= PackLimits::kLevels, "room {}: {} levels, at most {}", room.id, room.levels.size(),
@@ -136,8 +138,9 @@ class Checker {
               "portal {} joins rooms {} and {} of {}", k, portal.room_a, portal.room_b, rooms);
       require(portal.polygon.size() >= 3 && portal.polygon.size() <= PackLimits::kPortalCorners,
               "portal {} has {} corners, 3 to {} are allowed", k, portal.polygon.size(), PackLimits::kPortalCorners);
-      require(std::all_of(portal.polygon.begin(), portal.polygon.end(), [](const glm::dvec3& p) { return in_range(p); }),
-              "portal {} has a corner out of range", k);
+      require(
+          std::all_of(portal.polygon.begin(), portal.polygon.end(), [](const glm::dvec3& p) { return in_range(p); }),
+          "portal {} has a corner out of range", k);
       require(is_planar(portal.polygon), "portal {} is not planar", k);
     }
   }

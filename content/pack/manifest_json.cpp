@@ -1,8 +1,8 @@
 // The manifest as JSON text (one object, no white space, keys sorted, UTF-8), its self-hash, and back.
 //
 //   manifest_hash, format_version, producer, scene {name, hash}, options_hash, scale, scale_statement,
-//   light_statement, light {samples, bounces, cache_spacing_m, seed, recentred} (may be absent), credits, bounds, features [name], radiance_scale, exposure_ev,
-//   rooms [{id, name, bounds, origin_m, first_probe, probe_count,
+//   light_statement, light {samples, bounces, cache_spacing_m, seed, recentred} (may be absent), credits, bounds,
+//   features [name], radiance_scale, exposure_ev, rooms [{id, name, bounds, origin_m, first_probe, probe_count,
 //           levels [{chunk, geometry_size, radiance_size, bytes_disk, bytes_device, error (null = not measured)}]}],
 //   portals [{rooms [a, b], polygon [[x, y, z]]}], probe_positions_m [[x, y, z]],
 //   grid {origin_m, spacing_m, dims, probe [index]},
@@ -164,7 +164,8 @@ class Member {
   }
 
   [[noreturn]] void refuse(const std::string& what) const {
-    throw BadInput(fmt::format("{}: {} {}; bake the pack again", source_, path_.empty() ? "the manifest" : path_, what));
+    throw BadInput(
+        fmt::format("{}: {} {}; bake the pack again", source_, path_.empty() ? "the manifest" : path_, what));
   }
 
  private:
@@ -362,7 +363,8 @@ std::string serialise_manifest(const Manifest& manifest) {
 
 Manifest parse_manifest(const std::string& text, const std::string& source) {
   if (text.size() > PackLimits::kManifestBytes) {
-    throw BadInput(fmt::format("{}: has {} bytes, at most {} are read", source, text.size(), PackLimits::kManifestBytes));
+    throw BadInput(
+        fmt::format("{}: has {} bytes, at most {} are read", source, text.size(), PackLimits::kManifestBytes));
   }
   const json document = parse_json(text, source);
   check_version(document, source);

@@ -1,10 +1,10 @@
 // The pack format, version 1: this header is its normative text. Everything is little endian.
 //
 // THE FOLDER. A pack is a folder NAME.probes/ with one manifest `pack.json` and immutable chunks
-// `chunks/<32 lower-case hex digits>`. A chunk's name is the XXH3-128 (seed 0) of the file's bytes, most significant digit
-// first, as `xxhsum -H2` prints it. The manifest is written last and by rename; manifest.h and manifest_json.cpp say
-// what it holds. Its member "manifest_hash" is the XXH3-128 of the whole file with the 32 digits of that member's value
-// replaced by 32 zeros.
+// `chunks/<32 lower-case hex digits>`. A chunk's name is the XXH3-128 (seed 0) of the file's bytes, most significant
+// digit first, as `xxhsum -H2` prints it. The manifest is written last and by rename; manifest.h and manifest_json.cpp
+// say what it holds. Its member "manifest_hash" is the XXH3-128 of the whole file with the 32 digits of that member's
+// value replaced by 32 zeros.
 //
 // A CHUNK is one room at one level:
 //   char magic[8] = "PWCHUNK1"; u32 version = 1; u32 probe_count; u32 geometry_n; u32 radiance_r;
@@ -19,8 +19,9 @@
 //   prediction  The array is a grid of `side` columns. With a = left, b = up and c = upper left neighbour, a word is
 //               predicted as a + b - c, in the first row as a, in the first column as b, the first word as 0. What is
 //               stored is the residual (word - prediction) mod 2^bits as a zig-zag code: with s the residual read as a
-//               two's complement number, 2 s for s >= 0 and -2 s - 1 for s < 0. Planes of the world are affine in w over
-//               the map and a float's bits are affine in its value within an octave, so that little but rounding is left.
+//               two's complement number, 2 s for s >= 0 and -2 s - 1 for s < 0. Planes of the world are affine in w
+//               over the map and a float's bits are affine in its value within an octave, so that little but rounding
+//               is left.
 //   byte planes The words' most significant bytes, all of them in order, then the next bytes, down to the least.
 // Both where both are named: prediction first.
 #pragma once

@@ -83,7 +83,8 @@ std::vector<std::byte> read_chunk_file(const fs::path& pack, const std::string& 
   return bytes;
 }
 
-RoomLevel decode_level(const Manifest& manifest, std::size_t room, std::size_t level, std::span<const std::byte> bytes) {
+RoomLevel decode_level(const Manifest& manifest, std::size_t room, std::size_t level,
+                       std::span<const std::byte> bytes) {
   const RoomEntry& room_entry = manifest.rooms.at(room);
   const LevelEntry& level_entry = room_entry.levels.at(level);
   const std::string source = fmt::format("chunk {} (room {}, level {})", level_entry.chunk, room_entry.id, level);

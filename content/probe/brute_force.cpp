@@ -10,6 +10,12 @@ namespace probewalk {
 
 namespace {
 
+// Cells a side of a patch. Powers of two: n is one.
+constexpr int kFinePatch = 4;
+constexpr int kCoarsePatch = 16;
+// Slack of the patches' tests, in radians: far above rounding, far below a cell.
+constexpr double kPatchSlack = 1e-7;
+
 using Vertex = glm::ivec2;
 
 // The cut fraction on the edge from a to b, measured from a; negative = connected. Edges are stored once, from the
@@ -51,6 +57,12 @@ BruteForceProbe::BruteForceProbe(const ProbeGeometry& geometry) : n_(geometry.n)
     }
   }
   first_piece_.push_back(static_cast<std::uint32_t>(pieces_.size()));
+  for (int j = 0; j < n; j += kFinePatch) {
+    for (int i = 0; i < n; i += kFinePatch) fine_.push_back(patch_around(i, j, kFinePatch));
+  }
+  for (int j = 0; j < n; j += kCoarsePatch) {
+    for (int i = 0; i < n; i += kCoarsePatch) coarse_.push_back(patch_around(i, j, kCoarsePatch));
+  }
 }
 
 void BruteForceProbe::add_triangle(const ProbeGeometry& g, int i, int j, bool high) {
@@ -145,29 +157,97 @@ void BruteForceProbe::add_triangle(const ProbeGeometry& g, int i, int j, bool hi
   }
 }
 
-BruteAnswer BruteForceProbe::trace(glm::dvec3 x, glm::dvec3 d, double t_start) const {
-  // Only triangles that the ray's plane through the probe crosses can be met.
-  const glm::dvec3 normal = glm::cross(x, d);
-  const bool radial = glm::dot(normal, normal) < 1e-24 * glm::dot(x, x) * glm::dot(d, d);
-  std::vector<double> height(directions_.size());
-  for (std::size_t k = 0; k < directions_.size(); ++k) height[k] = glm::dot(normal, directions_[k]);
-
-  struct Visit {
-    double t0, t1;
-    const Piece* piece;
+BruteForceProbe::Patch BruteForceProbe::patch_around(int i0, int j0, int side) const {
+  const int i1 = std::min(i0 + side, n_), j1 = std::min(j0 + side, n_);
+  const auto direction = [&](int i, int j) {
+    return glm::normalize(directions_[static_cast<std::size_t>(j) * (n_ + 1) + i]);
   };
-  std::vector<Visit> visits;
-  for (std::size_t triangle = 0; triangle + 1 < first_piece_.size(); ++triangle) {
-    const std::int32_t* v = pieces_[first_piece_[triangle]].vertices;
-    if (!radial) {
-      const double a = height[v[0]], b = height[v[1]], c = height[v[2]];
-      if ((a > 0 && b > 0 && c > 0) || (a < 0 && b < 0 && c < 0)) continue;
+  glm::dvec3 sum(0.0);
+  for (int j = j0; j <= j1; ++j) {
+    for (int i = i0; i <= i1; ++i) sum += direction(i, j);
+  }
+  Patch patch{glm::normalize(sum), 1.0, 0.0, false};
+  // A cone narrower than a half-space that holds the corners of a triangle of directions holds all of it.
+  for (int j = j0; j <= j1; ++j) {
+    for (int i = i0; i <= i1; ++i) patch.cos_radius = std::min(patch.cos_radius, glm::dot(patch.axis, direction(i, j)));
+  }
+  patch.wide = !(patch.cos_radius > 0.2);
+  patch.sin_radius = std::sqrt(std::max(0.0, 1.0 - patch.cos_radius * patch.cos_radius));
+  return patch;
+}
+
+struct BruteForceProbe::Arc {
+  glm::dvec3 x, d;
+  double t_start;
+  glm::dvec3 normal;  // unit, of the plane through the ray and the probe
+  bool radial;        // there is no such plane: the ray runs straight at, or away from, the probe
+  glm::dvec3 from, to;  // unit, the arc's ends; of a radial ray the only directions it has
+  glm::dvec3 middle;    // unit
+  double cos_half, sin_half;  // of the angle from the middle to the ends
+  bool halves;                // the middle is well defined
+
+  Arc(glm::dvec3 origin, glm::dvec3 direction, double start) : x(origin), d(direction), t_start(start) {
+    const glm::dvec3 cross = glm::cross(x, d);
+    const double size = glm::dot(x, x) * glm::dot(d, d);
+    radial = glm::dot(cross, cross) <= 1e-24 * size;
+    normal = radial ? glm::dvec3(0.0) : glm::normalize(cross);
+    to = glm::normalize(d);
+    from = glm::dot(x, x) > 0.0 ? glm::normalize(x) : to;
+    const glm::dvec3 sum = from + to;
+    const double length = glm::length(sum);
+    halves = !radial && length > 1e-3;
+    middle = halves ? sum / length : to;
+    cos_half = 0.5 * length;
+    sin_half = std::sqrt(std::max(0.0, 1.0 - cos_half * cos_half));
+  }
+
+  bool may_meet(const Patch& patch) const {
+    if (patch.wide) return true;
+    if (radial) {
+      return std::max(glm::dot(patch.axis, from), glm::dot(patch.axis, to)) >= patch.cos_radius - kPatchSlack;
+    }
+    if (std::abs(glm::dot(normal, patch.axis)) > patch.sin_radius + kPatchSlack) return false;
+    // Beyond either end of the arc? Half of it and the cone's radius together are less than half a turn.
+    const double cos_reach = cos_half * patch.cos_radius - sin_half * patch.sin_radius;
+    return !halves || glm::dot(middle, patch.axis) >= cos_reach - kPatchSlack;
+  }
+};
+
+template <class Look>
+void BruteForceProbe::for_each_cell_near(const Arc& arc, const Look& look) const {
+  const int coarse_columns = (n_ + kCoarsePatch - 1) / kCoarsePatch, fine_columns = (n_ + kFinePatch - 1) / kFinePatch;
+  for (int cj = 0; cj < n_; cj += kCoarsePatch) {
+    for (int ci = 0; ci < n_; ci += kCoarsePatch) {
+      if (!arc.may_meet(coarse_[static_cast<std::size_t>(cj / kCoarsePatch * coarse_columns + ci / kCoarsePatch)])) continue;
+      for (int fj = cj; fj < std::min(cj + kCoarsePatch, n_); fj += kFinePatch) {
+        for (int fi = ci; fi < std::min(ci + kCoarsePatch, n_); fi += kFinePatch) {
+          if (!arc.may_meet(fine_[static_cast<std::size_t>(fj / kFinePatch * fine_columns + fi / kFinePatch)])) continue;
+          for (int j = fj; j < fj + kFinePatch; ++j) {
+            for (int i = fi; i < fi + kFinePatch; ++i) look(i, j);
+          }
+        }
+      }
+    }
+  }
+}
+
+// Notes where the ray is inside the cones of the cell's pieces.
+void BruteForceProbe::visit_cell(const Arc& arc, int i, int j, std::vector<Visit>& visits) const {
+  const std::size_t first_triangle = 2 * (static_cast<std::size_t>(j) * n_ + i);
+  for (std::size_t triangle = first_triangle; triangle < first_triangle + 2; ++triangle) {
+    const Piece& first = pieces_[first_piece_[triangle]];
+    if (!arc.radial) {
+      // Only triangles that the ray's plane through the probe crosses can be met.
+      double height[3];
+      for (int k = 0; k < 3; ++k) height[k] = glm::dot(arc.normal, directions_[static_cast<std::size_t>(first.vertices[k])]);
+      if (height[0] > 0 && height[1] > 0 && height[2] > 0) continue;
+      if (height[0] < 0 && height[1] < 0 && height[2] < 0) continue;
     }
     for (std::uint32_t p = first_piece_[triangle]; p < first_piece_[triangle + 1]; ++p) {
       const Piece& piece = pieces_[p];
-      double t0 = t_start, t1 = 1e300;
+      double t0 = arc.t_start, t1 = 1e300;
       for (int k = 0; k < piece.sides; ++k) {
-        const double at0 = glm::dot(piece.side[k], x), slope = glm::dot(piece.side[k], d);
+        const double at0 = glm::dot(piece.side[k], arc.x), slope = glm::dot(piece.side[k], arc.d);
         if (slope > 0) {
           t0 = std::max(t0, -at0 / slope);
         } else if (slope < 0) {
@@ -180,6 +260,28 @@ BruteAnswer BruteForceProbe::trace(glm::dvec3 x, glm::dvec3 d, double t_start) c
       if (t1 - t0 > 1e-13 * (1.0 + t0)) visits.push_back({t0, t1, &piece});
     }
   }
+}
+
+BruteAnswer BruteForceProbe::trace(glm::dvec3 x, glm::dvec3 d, double t_start) const {
+  const Arc arc(x, d, t_start);
+  std::vector<Visit> visits;
+  for_each_cell_near(arc, [&](int i, int j) { visit_cell(arc, i, j, visits); });
+  return decide(arc, visits);
+}
+
+BruteAnswer BruteForceProbe::trace_every_piece(glm::dvec3 x, glm::dvec3 d, double t_start) const {
+  const Arc arc(x, d, t_start);
+  std::vector<Visit> visits;
+  for (int j = 0; j < n_; ++j) {
+    for (int i = 0; i < n_; ++i) visit_cell(arc, i, j, visits);
+  }
+  return decide(arc, visits);
+}
+
+// Along the ray, piece by piece.
+BruteAnswer BruteForceProbe::decide(const Arc& arc, std::vector<Visit>& visits) const {
+  const glm::dvec3 x = arc.x, d = arc.d;
+  const double t_start = arc.t_start;
   std::sort(visits.begin(), visits.end(), [](const Visit& a, const Visit& b) {
     return a.t0 != b.t0 ? a.t0 < b.t0 : a.t1 < b.t1;
   });
@@ -201,6 +303,7 @@ BruteAnswer BruteForceProbe::trace(glm::dvec3 x, glm::dvec3 d, double t_start) c
     const double f1 = endless ? f_d : f_x + visit.t1 * f_d;
     if (f0 <= 0 && (!known || piece.cut)) {
       answer.on_cut = piece.cut;
+      answer.plane = piece.gradient;
       answer.t = visit.t0;
       const bool touching = !known && t_start > 0 && -f0 < texel;
       answer.cls = touching ? BruteAnswer::Class::kHit : known ? BruteAnswer::Class::kUnknown : BruteAnswer::Class::kBehind;
@@ -209,6 +312,7 @@ BruteAnswer BruteForceProbe::trace(glm::dvec3 x, glm::dvec3 d, double t_start) c
     known = true;
     if (f1 <= 0 && !(endless && f_d >= 0)) {
       answer.on_cut = piece.cut;
+      answer.plane = piece.gradient;
       answer.cls = BruteAnswer::Class::kHit;
       answer.t = f0 > 0 ? std::max(visit.t0, f_x / -f_d) : visit.t0;
       return answer;

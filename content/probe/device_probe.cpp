@@ -5,6 +5,9 @@
 #include <bit>
 #include <cmath>
 
+#include "content/probe/pyramid.h"
+#include "content/probe/tracer_f32.h"
+
 namespace probewalk {
 
 namespace {
@@ -132,8 +135,8 @@ std::size_t count_cut_cells(const ProbeGeometry& geometry) {
 
 std::uint64_t device_probe_bytes(int n, int r, std::size_t cut_cells) {
   const std::uint64_t n2 = static_cast<std::uint64_t>(n) * n;
-  const std::uint64_t vertices = static_cast<std::uint64_t>(n + 1) * (n + 1);
-  const std::uint64_t pyramid = (n2 - 4) / 3;  // levels 1 .. log2(n) - 1
+  const std::uint64_t vertices = static_cast<std::uint64_t>(f32::pyramid_begin(n));
+  const auto pyramid = static_cast<std::uint64_t>(f32::pyramid_words(log2_of(n)));
   const std::uint64_t radiance = mip_chain_texels(r) + static_cast<std::uint64_t>(r) * r / 2;
   return 4 * (vertices + pyramid + n2 / 16 + kCutRecordWords * cut_cells + radiance);
 }
@@ -160,6 +163,7 @@ DeviceProbe build_device_probe(const ProbeMap& map) {
   std::vector<std::uint32_t> masks, records;
   masks.reserve(static_cast<std::size_t>(n) * n / 16);
   std::uint32_t cut_cells = 0;
+  std::vector<bool> cut_cell(maxima.size());
   for (int j = 0; j < n; ++j) {
     for (int i = 0; i < n; ++i) {
       const std::size_t index = static_cast<std::size_t>(j) * n + i;
@@ -173,25 +177,15 @@ DeviceProbe build_device_probe(const ProbeMap& map) {
         masks[masks.size() - 2] |= 1u << (index % 32);
         append_cut_record(cell, cut, records);
         ++cut_cells;
+        cut_cell[index] = true;
         maximum *= kCutExtension;
       }
       maxima[index] = maximum;
     }
   }
-  for (int side = n / 2; side >= 2; side /= 2) {
-    std::vector<float> coarser(static_cast<std::size_t>(side) * side);
-    const std::size_t fine_side = 2 * static_cast<std::size_t>(side);
-    for (std::size_t j = 0; j < static_cast<std::size_t>(side); ++j) {
-      for (std::size_t i = 0; i < static_cast<std::size_t>(side); ++i) {
-        const float* p = &maxima[2 * j * fine_side + 2 * i];
-        const float maximum = std::max({p[0], p[1], p[fine_side], p[fine_side + 1]});
-        coarser[j * side + i] = maximum;
-        words.push_back(std::bit_cast<std::uint32_t>(maximum));
-      }
-    }
-    maxima = std::move(coarser);
-  }
   const float top = *std::max_element(maxima.begin(), maxima.end());
+  words.resize(static_cast<std::size_t>(f32::pyramid_begin(n)), 0u);
+  append_pyramid(g, std::move(maxima), cut_cell, words);
   words.insert(words.end(), masks.begin(), masks.end());
   words.insert(words.end(), records.begin(), records.end());
 

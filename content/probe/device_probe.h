@@ -25,7 +25,7 @@ ProbeRecord record_in_memory(const DeviceProbe& probe);
 // Bytes of the words of a probe of n cells and r texels a side.
 std::uint64_t device_probe_bytes(int n, int r, std::size_t cut_cells);
 // Bytes that a probe's two blocks take on the device, where each begins at a multiple of kDeviceBlockAlignment.
-inline constexpr std::uint64_t kDeviceBlockAlignment = 16;
+inline constexpr std::uint64_t kDeviceBlockAlignment = 32;
 std::uint64_t device_block_bytes(const std::vector<std::uint32_t>& words);
 std::uint64_t device_bytes(const DeviceProbe& probe);
 // device_bytes is at most this much more than device_probe_bytes.

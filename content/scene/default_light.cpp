@@ -155,7 +155,9 @@ std::vector<Panel> candidates(const RayScene& rays, const Bounds& bounds) {
   const glm::dvec3 size = bounds.upper_m - bounds.lower_m;
   const double column_m = std::max(kMinColumn_m, std::sqrt(size.x * size.z / kMaxColumns));
   // A scene far longer than wide, a kilometre of fence, would have more in its one row.
-  const auto columns_of = [&](double size_m) { return static_cast<int>(std::clamp(size_m / column_m, 1.0, double{kMaxColumns})); };
+  const auto columns_of = [&](double size_m) {
+    return static_cast<int>(std::clamp(size_m / column_m, 1.0, double{kMaxColumns}));
+  };
   const int columns_x = columns_of(size.x);
   const int columns_z = columns_of(size.z);
   std::vector<Panel> panels;

@@ -82,7 +82,9 @@ struct Sky {
   glm::vec3 horizon_cd_m2{0.0f};
   glm::vec3 ground_cd_m2{0.0f};
   glm::vec3 radiance(glm::vec3 unit_direction) const;
-  bool is_black() const { return zenith_cd_m2 == glm::vec3(0) && horizon_cd_m2 == glm::vec3(0) && ground_cd_m2 == glm::vec3(0); }
+  bool is_black() const {
+    return zenith_cd_m2 == glm::vec3(0) && horizon_cd_m2 == glm::vec3(0) && ground_cd_m2 == glm::vec3(0);
+  }
 };
 
 // A room that the author named (node extras or rooms.json), as axis-aligned boxes.

@@ -73,8 +73,10 @@ glm::vec4 bilinear(const Texture& texture, const Texture::Level& level, glm::vec
   const std::array<float, 256>& color = texture.srgb ? decode_tables().srgb : decode_tables().linear;
   const Taps x = taps(uv.x, level.width_px, texture.wrap_u);
   const Taps y = taps(uv.y, level.height_px, texture.wrap_v);
-  const glm::vec4 top = glm::mix(texel(level, color, x.first, y.first), texel(level, color, x.second, y.first), x.weight);
-  const glm::vec4 low = glm::mix(texel(level, color, x.first, y.second), texel(level, color, x.second, y.second), x.weight);
+  const glm::vec4 top =
+      glm::mix(texel(level, color, x.first, y.first), texel(level, color, x.second, y.first), x.weight);
+  const glm::vec4 low =
+      glm::mix(texel(level, color, x.first, y.second), texel(level, color, x.second, y.second), x.weight);
   return glm::mix(top, low, y.weight);
 }
 
@@ -91,7 +93,8 @@ Cover cover(int i, int source, int target) {
   Cover result;
   result.first = static_cast<int>(begin);
   for (int s = result.first; s < source && s < end && result.count < 4; ++s) {
-    result.weight[result.count++] = static_cast<float>(std::min(end, s + 1.0) - std::max(begin, static_cast<double>(s)));
+    result.weight[result.count++] =
+        static_cast<float>(std::min(end, s + 1.0) - std::max(begin, static_cast<double>(s)));
   }
   return result;
 }

@@ -94,7 +94,8 @@ UnitGuess guess_unit(const Scene& scene) {
   guess.statement = fmt::format("1 unit is {:g} m ({}), guessed: {:.4g} x {:.4g} x {:.4g} units, {}", best.scale,
                                 best.name, size.x, size.y, size.z, measured);
   if (gap <= 0.0) {
-    guess.warning = fmt::format("the unit cannot be told from the scene; {:g} m is a guess, --scale says it", best.scale);
+    guess.warning =
+        fmt::format("the unit cannot be told from the scene; {:g} m is a guess, --scale says it", best.scale);
   } else if (gap * best.scale < kMinStorey_m) {
     guess.warning = fmt::format("with {:g} m a unit, storeys are {:.2f} m high; --scale says the unit", best.scale,
                                 gap * best.scale);

@@ -99,7 +99,8 @@ std::vector<Residency::Candidate> Residency::candidates(const Walker& walker, co
   const auto room = graph_.room_of(walker.head_m, room_, options_.doorway_margin_m);
   room_ = room;
   glm::dvec3 ahead_m = walker.velocity_m_s * options_.look_ahead_s;
-  if (const double length_m = glm::length(ahead_m); length_m > kFarthestLookAhead_m) ahead_m *= kFarthestLookAhead_m / length_m;
+  if (const double length_m = glm::length(ahead_m); length_m > kFarthestLookAhead_m)
+    ahead_m *= kFarthestLookAhead_m / length_m;
   const auto room_ahead = graph_.room_of(walker.head_m + ahead_m, room, options_.doorway_margin_m);
 
   std::vector<Candidate> order;

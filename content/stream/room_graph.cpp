@@ -66,7 +66,8 @@ std::vector<RoomGraph::Reach> RoomGraph::reach(std::uint32_t room, const glm::dv
     for (const Way& way : ring) {
       for (const Door& door : doors_[way.reach.room]) {
         if (seen.contains(door.to)) continue;
-        const Way there{{door.to, portals, way.reach.distance_m + glm::distance(way.at_m, door.middle_m)}, door.middle_m};
+        const Way there{{door.to, portals, way.reach.distance_m + glm::distance(way.at_m, door.middle_m)},
+                        door.middle_m};
         const auto [known, is_new] = next.try_emplace(door.to, there);
         if (!is_new && there.reach.distance_m < known->second.reach.distance_m) known->second = there;
       }

@@ -15,9 +15,9 @@ class RoomGraph {
 
   std::size_t size() const { return bounds_.size(); }
 
-  // The room that holds the point: the first whose bounds do, else the nearest. `previous` (a room, or -1) is kept until
-  // the point is `margin_m` outside of it or as deep inside another that comes first, so that a head that sways in a
-  // doorway stays in one room.
+  // The room that holds the point: the first whose bounds do, else the nearest. `previous` (a room, or -1) is kept
+  // until the point is `margin_m` outside of it or as deep inside another that comes first, so that a head that sways
+  // in a doorway stays in one room.
   std::uint32_t room_of(const glm::dvec3& point_m, std::int64_t previous, double margin_m) const;
 
   struct Reach {

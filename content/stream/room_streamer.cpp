@@ -10,7 +10,8 @@ namespace probewalk {
 namespace {
 
 std::int64_t now_ns() {
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch()).count();
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch())
+      .count();
 }
 
 }  // namespace
@@ -110,7 +111,8 @@ std::string RoomStreamer::describe_refused(const LoadResult& result) const {
                          : "; it is loaded anew where the budget has space for it");
 }
 
-bool RoomStreamer::settle(const Walker& walker, std::chrono::milliseconds at_most, const std::function<void()>& between) {
+bool RoomStreamer::settle(const Walker& walker, std::chrono::milliseconds at_most,
+                          const std::function<void()>& between) {
   const auto deadline = std::chrono::steady_clock::now() + at_most;
   while (true) {
     update(walker);

@@ -3,8 +3,15 @@
 //
 // Geometry block of a probe of n = 2^n_log2 cells a side, in 32-bit words:
 //   (n+1)^2            w at the vertices, row-major, float bits; exactly 0 = sky
-//   pyramid            levels 1 .. n_log2-1, level l has (n >> l)^2 floats: maximum of w over the node, cut cells
-//                      counted with their extension (1 + 2 kSlopeClamp)
+//   (padding)          up to a multiple of 8 words
+//   pyramid            levels 1, 3, 5 .. up to n_log2-3, level l has (n >> l)^2 entries of 16 bits, in nodes of 4 x 4
+//                      entries (8 words, so that one read of 32 aligned bytes serves two levels of a binary pyramid); nodes
+//                      row-major, entries row-major in their node, the even one in the low half. An entry stands for
+//                      2^l x 2^l cells:
+//                        bits 0..14  code of the maximum of w over it, rounded up (pyramid_code), cut cells counted with
+//                                    their extension (1 + 2 kSlopeClamp); 0 = nothing but sky
+//                        bit 15      planar: no cut, and w at all its vertices lies within kPlanarTolerance of the plane
+//                                    through its corners next to the map's centre: the ray meets that instead of the cells
 //   n^2/32 * 2         per 32 cells: mask of cells with a cut, number of such cells before
 //   8 per cut cell     cut record, quadrant-local (cell corner nearest the map's centre is (0, 0)):
 //     [0] fractions, 6 bits each: (0,0)-(1,0), (0,0)-(0,1), (1,0)-(0,1), (1,0)-(1,1), (0,1)-(1,1)
@@ -30,9 +37,18 @@ PW_CONSTANT float kSlopeClamp = 0.05f;
 PW_CONSTANT float kSlopeStep = 1.52592547e-6f;
 // A cut cell's maximum counts this much more, so that no extended piece sticks out of its pyramid node.
 PW_CONSTANT float kCutExtension = 1.1001f;
-// Node level at which a walk starts; 3 to 5 are within noise of one another (design: tracer, 3.1).
-PW_CONSTANT int kStartLevel = 4;
+// Highest level of the pyramid that a walk looks at (odd).
+PW_CONSTANT int kStartLevel = 5;
+// Added to a walk's level: planar entries are gone through cell by cell all the same, which gives the very bits of a walk
+// without a pyramid.
+PW_CONSTANT int kWithoutPlanes = 16;
 PW_CONSTANT int kCutRecordWords = 8;
+// Relative to w. Beyond what floats hold of it, so that walls are planar; a distance changes by as much or, where the ray
+// grazes the surface, by what rounding does to it anyway.
+PW_CONSTANT float kPlanarTolerance = 2e-6f;
+PW_CONSTANT pw_uint kEntryPlanar = 0x8000u;
+// Entries hold w from 2^-32 on, 512 steps an octave: code + kEntryBase are the upper 18 bits of the float.
+PW_CONSTANT pw_uint kEntryBase = 48640u;
 
 // Answers of a ray.
 PW_CONSTANT int kClassHit = 0;
@@ -85,7 +101,7 @@ struct ViewConstants {
 
 PW_CONSTANT int kMaxViews = 4;
 
-// Written just before submit (late pose), read by trace_stereo.comp, resolve.frag and depth.frag.
+// Written just before submit (late pose), read by trace_stereo.glsl, resolve.frag and depth.frag.
 struct FrameConstants {
   GridConstants grid;
   TraceConstants trace;
@@ -97,6 +113,8 @@ struct FrameConstants {
   float near_m;  // planes of the depth written, see view_depth.h
   float far_m;
   ViewConstants view[4];
+  pw_uvec2 baseline_address;  // of BaselineConstants, for trace_stereo_baseline.comp and sample_edges_baseline.comp
+  pw_uvec2 reserved0;
 };
 
 PW_SHARED_END
@@ -104,7 +122,7 @@ PW_SHARED_END
 #ifdef __cplusplus
 namespace probewalk {
 static_assert(sizeof(ProbeRecord) == 64 && sizeof(GridConstants) == 64 && sizeof(ViewConstants) == 96);
-static_assert(sizeof(FrameConstants) == 64 + 16 + 32 + 4 * 96);
+static_assert(sizeof(FrameConstants) == 64 + 16 + 32 + 4 * 96 + 16);
 }  // namespace probewalk
 #endif
 

@@ -14,8 +14,8 @@
 
 // How far ahead of a hand-off the next probe's view is tested, as a fraction of the mean probe spacing.
 #define PW_START_AHEAD real(0.01)
-// Pyramid level of the start test's first look-up (design: fewer-tries, 1).
-#define PW_START_LEVEL 2
+// Pyramid level of the start test's first look-up; 1 to 3 are alike (design: fewer-tries, 2).
+#define PW_START_LEVEL 3
 // Progress below this is none: a probe that failed here is not asked again.
 #define PW_PROGRESS_M real(1e-3)
 // Walks a ray can have, whatever the dials say.
@@ -54,11 +54,13 @@ PW_FUNCTION int start_test(ProbeRecord probe, real3 x, real margin, PW_INOUT(pw_
   if (len <= real(probe.l_min_m)) return 2;
   int n = 1 << int(probe.n_log2);
   real2 uv = (octahedral_uv(x) + real2(1, 1)) * (real(n) * real(0.5));
-  int i = min(max(int(uv.x), 0), n - 1) >> PW_START_LEVEL, j = min(max(int(uv.y), 0), n - 1) >> PW_START_LEVEL;
   real w = real(1) / len;
-  lookups += 1u;
-  int node = (n + 1) * (n + 1) + pyramid_offset(n, PW_START_LEVEL) + j * (n >> PW_START_LEVEL) + i;
-  if (w > pw_word_real(probe.geometry_address, node)) return 2;
+  int level = min(PW_START_LEVEL, pyramid_top(int(probe.n_log2)));
+  if (level > 0) {
+    int i = min(max(int(uv.x), 0), n - 1) >> level, j = min(max(int(uv.y), 0), n - 1) >> level;
+    lookups += 1u;
+    if (w > entry_maximum(pyramid_entry(probe.geometry_address, pyramid_node(n, level, i, j), i, j))) return 2;
+  }
   lookups += 1u;
   real surface = nearest_vertex_w(probe, x);
   return surface <= real(0) || w > surface * (real(1) - margin) ? 1 : 0;

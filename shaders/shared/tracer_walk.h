@@ -6,13 +6,23 @@
 // triangle of the world, and the walk needs one compare a node, no step size and no thickness (design: tracer, 2).
 //
 // What the walk guarantees on any data: it ends (every step moves on by at least one cell), it forms no NaN and no
-// infinity from finite rays, and with the pyramid it visits the same surfaces as without, bit for bit.
+// infinity from finite rays and says "unknown" to others, and with the pyramid it visits the same surfaces as without,
+// bit for bit; with its planes, too, within the tolerance that makes them planes.
 
 // Stands for "never" in ray parameters; finite, so that no proof rests on the device's infinities.
 #define PW_NEVER real(1e30)
 // Status of a walk beside the answers of probe_layout.h.
 #define PW_WALKING (-1)
 #define PW_CLASS_BEHIND 3  // the ray's start lies behind the probe's surface
+// The first look is at entries at most this many times as wide as the way through the octant.
+#ifndef PW_FIRST_LOOK
+#define PW_FIRST_LOOK real(1)
+#endif
+// Sizes of what can be walked: origins up to here from the probe, directions no longer and no shorter than these. Beyond
+// them sums and reciprocals might not be finite.
+#define PW_GREATEST_M real(1e15)
+#define PW_LONGEST real(1e6)
+#define PW_SHORTEST real(1e-6)
 
 // A piece of the ray inside one octant, in quadrant-local map coordinates [0, half]^2; everything is linear in lambda.
 struct OctantSegment {
@@ -50,10 +60,32 @@ PW_FUNCTION real segment_t(OctantSegment s, real lambda) {
   return min((s.tw0 + lambda * s.dtw) / max(s.w0 + lambda * s.dw, real(1e-30)), PW_NEVER);
 }
 
-// Offset of pyramid level l >= 1 behind the vertices, in words: the levels before it have n^2/4 + ... words.
+// Highest level of a probe's pyramid; -1: it has none.
+PW_FUNCTION int pyramid_top(int n_log2) { return n_log2 < 4 ? -1 : ((n_log2 - 4) >> 1) * 2 + 1; }
+
+// Where the pyramid begins, in words of the geometry block.
+PW_FUNCTION int pyramid_begin(int n) { return ((n + 1) * (n + 1) + 7) & ~7; }
+
+// Offset of level 1, 3, 5 .. in the pyramid, in words: the levels before it have n^2/8 + n^2/128 + ...
 PW_FUNCTION int pyramid_offset(int n, int level) {
   int finer = n >> (level - 1);
-  return (n * n - finer * finer) / 3;
+  return (n * n - finer * finer) / 15 * 2;
+}
+
+// Words of the pyramid of a probe of 2^n_log2 cells a side.
+PW_FUNCTION int pyramid_words(int n_log2) { return pyramid_offset(1 << n_log2, pyramid_top(n_log2) + 2); }
+
+// The node, by its first word, that holds entry (x, y) of a level.
+PW_FUNCTION int pyramid_node(int n, int level, int x, int y) {
+  return pyramid_begin(n) + pyramid_offset(n, level) + (((y >> 2) * (n >> (level + 2)) + (x >> 2)) << 3);
+}
+PW_FUNCTION pw_uint pyramid_entry(pw_uvec2 geometry, int node, int x, int y) {
+  return (pw_word(geometry, node + ((y & 3) << 1) + ((x & 3) >> 1)) >> pw_uint((x & 1) << 4)) & 65535u;
+}
+// Not below any w of the entry's cells.
+PW_FUNCTION real entry_maximum(pw_uint entry) {
+  pw_uint code = entry & 32767u;
+  return code == 0u ? real(0) : real(pw_float_from_bits((code + kEntryBase) << 14));
 }
 
 // The ray's height above one planar piece at its two ends decides. Returns true when the walk ends here. `cut`: the
@@ -230,9 +262,7 @@ PW_FUNCTION bool walk_segment(ProbeRecord probe, OctantSegment s, real t_start, 
                               PW_INOUT(WalkState) state) {
   const int n = 1 << int(probe.n_log2);
   const int half_n = n >> 1;
-  const int top = min(start_level, int(probe.n_log2) - 1);
-  const int vertices = (n + 1) * (n + 1);
-  const int masks = vertices + (n * n - 4) / 3;
+  const int masks = pyramid_begin(n) + pyramid_words(int(probe.n_log2));
   const int records = masks + n * n / 16;
   const pw_uvec2 geometry = probe.geometry_address;
   const real texel = real(2) / real(n);
@@ -247,7 +277,17 @@ PW_FUNCTION bool walk_segment(ProbeRecord probe, OctantSegment s, real t_start, 
   ix = min(max(ix, 0), half_n - 1);
   iy = min(max(iy, 0), half_n - 1);
 
-  int level = top;
+  // Levels 0 (cells), 1, 3, 5 ... The first look is as wide as the way is long, at most.
+  const bool planes = start_level < kWithoutPlanes;
+  int top = min(planes ? start_level : start_level - kWithoutPlanes, pyramid_top(int(probe.n_log2)));
+  top = top < 1 ? 0 : ((top - 1) | 1);
+  const real way = max(abs(s.d_uv.x), abs(s.d_uv.y));
+  while (top > 1 && real(1 << top) > way * PW_FIRST_LOOK) top -= 2;
+  // A segment that moves by less than a cell, a ray's that runs (almost) straight away from the probe, meets three cells
+  // at most, mostly one: looking at nodes first would only add to that (thesis 4.3: one look-up).
+  if (way < real(1)) top = 0;
+
+  int level = top, node_read = -1;
   real lambda = real(0), w_in = s.w0;
   for (;;) {
     // The node's far lines and where the ray leaves it.
@@ -267,11 +307,30 @@ PW_FUNCTION bool walk_segment(ProbeRecord probe, OctantSegment s, real t_start, 
       int node_x = ix >> level, node_y = iy >> level;
       int gx = s.side.x > 0 ? half_nodes + node_x : half_nodes - 1 - node_x;
       int gy = s.side.y > 0 ? half_nodes + node_y : half_nodes - 1 - node_y;
-      real maximum = pw_word_real(geometry, vertices + pyramid_offset(n, level) + gy * 2 * half_nodes + gx);
-      state.lookups += 1u;
+      int node = pyramid_node(n, level, gx, gy);
+      if (node != node_read) state.lookups += 1u;
+      node_read = node;
+      pw_uint entry = pyramid_entry(geometry, node, gx, gy);
+      real maximum = entry_maximum(entry);
       if (!(maximum <= real(0)) && w_low <= maximum) {
-        --level;
-        continue;
+        if (!planes || (entry & kEntryPlanar) == 0u) {
+          level = max(level - 2, 0);
+          continue;
+        }
+        // One plane stands for all the entry's cells: that through the corners next to the map's centre.
+        int corner_x = node_x << level, corner_y = node_y << level, size = 1 << level;
+        int corner = (half_n + s.side.y * corner_y) * (n + 1) + half_n + s.side.x * corner_x;
+        real w00 = pw_word_real(geometry, corner);
+        real gu = (pw_word_real(geometry, corner + s.side.x * size) - w00) / real(size);
+        real gv = (pw_word_real(geometry, corner + s.side.y * size * (n + 1)) - w00) / real(size);
+        state.lookups += 1u;
+        real2 corner_uv = real2(real(corner_x), real(corner_y));
+        real2 q0 = s.uv0 + s.d_uv * lambda - corner_uv, q1 = s.uv0 + s.d_uv * exit - corner_uv;
+        real f0 = w_in - (w00 + gu * q0.x + gv * q0.y), f1 = w_out - (w00 + gu * q1.x + gv * q1.y);
+        if (meet_piece(s, t_start, texel, false, w_in, f0, f1, lambda, exit, state)) {
+          state.plane = plane_of_piece(real3(w00, gu, gv), real2(0, 0), corner_uv, s.side, s.upper, real(half_n));
+          return true;
+        }
       }
       state.known = true;
     } else {
@@ -391,7 +450,7 @@ PW_FUNCTION bool walk_segment(ProbeRecord probe, OctantSegment s, real t_start, 
     if (ix < 0 || iy < 0 || ix >= half_n || iy >= half_n) return false;
     lambda = exit;
     w_in = w_out;
-    if (level < top && (((ix ^ old_x) | (iy ^ old_y)) >> (level + 1)) != 0) ++level;
+    if (level < top && (((ix ^ old_x) | (iy ^ old_y)) >> (level == 0 ? 1 : level + 2)) != 0) level = (level + 1) | 1;
   }
 }
 
@@ -409,7 +468,8 @@ PW_FUNCTION real octant_sign(bool crosses, real t, real t_start, real x, real d)
 }
 
 // Walks the ray x + t d, t >= t_start, through the probe's map. x: origin relative to the probe. start_level: pyramid
-// level of the first look, 0 = cell by cell. Signs come from comparing crossing times, never from evaluating points.
+// level of the first look, 0 = cell by cell, + kWithoutPlanes for the very answers of cell by cell. Signs come from
+// comparing crossing times, never from evaluating points.
 PW_FUNCTION WalkState walk_probe(ProbeRecord probe, real3 x, real3 d, real t_start, int start_level) {
   WalkState state;
   state.status = PW_WALKING;
@@ -421,6 +481,15 @@ PW_FUNCTION WalkState walk_probe(ProbeRecord probe, real3 x, real3 d, real t_sta
   state.plane_at = real2(0, 0);
   const real half_n = real(1 << int(probe.n_log2 - 1u));
   const real l_min = real(probe.l_min_m);
+  // Of a ray whose numbers are none nothing is known; the comparisons fail for NaN, too.
+  bool has_start = abs(t_start) < PW_NEVER;
+  real size = abs(x.x) + abs(x.y) + abs(x.z), speed = abs(d.x) + abs(d.y) + abs(d.z);
+  if (!(has_start && size < PW_GREATEST_M && speed < PW_LONGEST && speed > PW_SHORTEST)) {
+    state.status = kClassUnknown;
+    state.t = has_start ? t_start : real(0);
+    state.t_safe = state.t;
+    return state;
+  }
 
   real3 t_cross, s;
   real t_axis;

@@ -61,12 +61,13 @@ Ray cast(const ProbeSet& probes, const TraceConstants& dials, const RayScene& tr
 
 void print(const std::string& name, std::vector<Ray>& rays) {
   std::size_t counts[5] = {}, nan = 0;
-  double lookups = 0.0, tries = 0.0;
+  double lookups = 0.0, tries = 0.0, answered_lookups = 0.0;
   std::vector<float> errors;
   for (const Ray& ray : rays) {
     ++counts[static_cast<int>(ray.outcome)];
     nan += ray.is_nan;
     lookups += ray.lookups;
+    answered_lookups += ray.outcome == Outcome::kHole ? 0 : ray.lookups;
     tries += ray.tries;
     if (ray.error >= 0.0f) errors.push_back(ray.error);
   }
@@ -77,11 +78,12 @@ void print(const std::string& name, std::vector<Ray>& rays) {
     return errors.empty() ? 0.0f : errors[static_cast<std::size_t>(p * static_cast<double>(errors.size() - 1))];
   };
   fmt::print("{}: {} rays, wrong {:.2f} % (distance {:.2f}, hit for miss {:.2f}, miss for hit {:.2f}), hole {:.2f} %, error "
-             "p50 {:.1e} p95 {:.1e} p99 {:.1e}, look-ups {:.1f}, probes {:.2f}, NaN {}\n",
+             "p50 {:.1e} p95 {:.1e} p99 {:.1e}, look-ups {:.1f} ({:.1f} of rays with an answer), probes {:.2f}, NaN {}\n",
              name, rays.size(),
              share(Outcome::kWrongDistance) + share(Outcome::kHitForMiss) + share(Outcome::kMissForHit),
              share(Outcome::kWrongDistance), share(Outcome::kHitForMiss), share(Outcome::kMissForHit),
-             share(Outcome::kHole), rank(0.5), rank(0.95), rank(0.99), lookups / n, tries / n, nan);
+             share(Outcome::kHole), rank(0.5), rank(0.95), rank(0.99), lookups / n,
+             answered_lookups / std::max(1.0, n - static_cast<double>(counts[static_cast<int>(Outcome::kHole)])), tries / n, nan);
 }
 
 void run(const std::filesystem::path& pack_folder, const std::filesystem::path& scene_file, int count) {

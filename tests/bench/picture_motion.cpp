@@ -1,7 +1,9 @@
 // How still the picture holds along a slow way of the head: draws a pack in stereo frame by frame, compares with the
 // same pictures from the triangles, and prints a table; DIR/motion.json holds it, too. The triangles' pictures are kept
 // in DIR and used again: a DIR is for one way through one pack.
-//   picture_motion PACK SCENE DIR FROM TO [FRAMES [WIDTHxHEIGHT [SAMPLES]]]      FROM, TO: x,y,z,yaw,pitch
+//   picture_motion PACK SCENE DIR FROM TO [FRAMES [WIDTHxHEIGHT [SAMPLES [SIDE]]]]      FROM, TO: x,y,z,yaw,pitch
+// SAMPLES: rays a pixel at edges, of the probes' pictures. SIDE: rays along a pixel's side, of the triangles'; with 1
+// theirs flicker at edges as much as the probes', and the error does not tell which of both jumped.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -39,6 +41,7 @@ struct Arguments {
   int frames = 60;
   VkExtent2D extent{240, 180};
   std::uint32_t samples = 1;
+  int side = 1;
 };
 
 Pose parse_pose(const std::string& text) {
@@ -50,13 +53,15 @@ Pose parse_pose(const std::string& text) {
 }
 
 Arguments parse(int argc, char** argv) {
-  if (argc < 6) throw BadUsage("picture_motion PACK SCENE DIR FROM TO [FRAMES [WIDTHxHEIGHT [SAMPLES]]]");
+  if (argc < 6) throw BadUsage("picture_motion PACK SCENE DIR FROM TO [FRAMES [WIDTHxHEIGHT [SAMPLES [SIDE]]]]");
   Arguments a{argv[1], argv[2], argv[3], parse_pose(argv[4]), parse_pose(argv[5])};
   if (argc > 6) a.frames = std::stoi(argv[6]);
   if (argc > 7 && std::sscanf(argv[7], "%ux%u", &a.extent.width, &a.extent.height) != 2) {
     throw BadUsage(std::string(argv[7]) + ": write WxH in pixels of one eye");
   }
   if (argc > 8) a.samples = static_cast<std::uint32_t>(std::stoul(argv[8]));
+  if (argc > 9) a.side = std::stoi(argv[9]);
+  if (a.side < 1 || a.side > 16) throw BadUsage("SIDE: 1 to 16 rays");
   if (a.frames < 2) throw BadUsage("two frames at least");
   return a;
 }
@@ -76,9 +81,27 @@ std::vector<ViewConstants> eyes_at(const Pose& pose, VkExtent2D extent) {
   return views;
 }
 
+// Means of side x side pixels, taken of what is shown, as the probes' extra rays are: light adds up on the display.
+ImageRgbF averaged(const ImageRgbF& fine, int side, float exposure) {
+  ImageRgbF image{fine.width_px / side, fine.height_px / side, {}};
+  image.rgb.reserve(fine.rgb.size() / static_cast<std::size_t>(side * side));
+  for (int y = 0; y < image.height_px; ++y) {
+    for (int x = 0; x < image.width_px; ++x) {
+      glm::vec3 sum(0.0f);
+      for (int k = 0; k < side * side; ++k) {
+        const int at = (y * side + k / side) * fine.width_px + x * side + k % side;
+        sum += tone_curve(fine.rgb[static_cast<std::size_t>(at)] * exposure);
+      }
+      image.rgb.push_back(tone_curve_inverse(sum / static_cast<float>(side * side)) / exposure);
+    }
+  }
+  return image;
+}
+
 // The triangles' pictures of all frames, as displayed: read from `file`, or cast and written there.
 std::vector<ImageRgb8> expected_pictures(const Arguments& a, const Manifest& manifest, Progress& progress) {
-  const fs::path file = a.dir / fmt::format("expected-{}x{}x{}.rgb", a.frames, a.extent.width, a.extent.height);
+  const fs::path file =
+      a.dir / fmt::format("expected-{}x{}x{}x{}.rgb", a.frames, a.extent.width, a.extent.height, a.side);
   const ImageRgb8 empty{static_cast<int>(a.extent.width), static_cast<int>(a.extent.height),
                         std::vector<std::uint8_t>(3 * std::size_t{a.extent.width} * a.extent.height)};
   std::vector<ImageRgb8> pictures(2 * static_cast<std::size_t>(a.frames), empty);
@@ -91,13 +114,15 @@ std::vector<ImageRgb8> expected_pictures(const Arguments& a, const Manifest& man
     return pictures;
   }
   const ReferenceCaster caster(a.scene, manifest, std::nullopt, 0, progress);
+  const auto ev = static_cast<float>(manifest.exposure_ev);
   std::ofstream out(file, std::ios::binary);
   for (int frame = 0; frame < a.frames; ++frame) {
     const Pose pose = between(a.from, a.to, frame / (a.frames - 1.0));
-    const auto cast = caster.cast(eyes_at(pose, a.extent), empty.width_px, empty.height_px);
+    const auto cast = caster.cast(eyes_at(pose, a.extent), empty.width_px * a.side, empty.height_px * a.side);
     for (std::size_t eye = 0; eye < 2; ++eye) {
       ImageRgb8& picture = pictures[2 * static_cast<std::size_t>(frame) + eye];
-      picture = display_transform(cast[eye], static_cast<float>(manifest.exposure_ev));
+      const ImageRgbF shown = a.side == 1 ? cast[eye] : averaged(cast[eye], a.side, exposure_from_ev(ev));
+      picture = display_transform(shown, ev);
       out.write(reinterpret_cast<const char*>(picture.rgb.data()), static_cast<std::streamsize>(picture.rgb.size()));
     }
   }
@@ -175,6 +200,7 @@ nlohmann::json measure(const Arguments& a) {
   const double all = 2.0 * a.extent.width * a.extent.height * a.frames;
   nlohmann::json table{{"frames", a.frames},
           {"samples", a.samples},
+          {"reference_rays_per_side", a.side},
           {"flip_mean", flip / flips},
           {"psnr_db", psnr / flips},
           {"flicker", sums.flicker / static_cast<double>(sums.pixels)},

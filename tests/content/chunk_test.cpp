@@ -263,7 +263,8 @@ TEST(Chunk, WindowsBeyondTheLimitAreRefused) {
   // A frame header by hand: magic, descriptor 0 (no content size), window descriptor 2^(10+exponent), one raw block.
   const auto frame = [](unsigned exponent) {
     std::vector<std::byte> bytes;
-    for (const unsigned byte : {0x28u, 0xb5u, 0x2fu, 0xfdu, 0x00u, exponent << 3}) bytes.push_back(static_cast<std::byte>(byte));
+    for (const unsigned byte : {0x28u, 0xb5u, 0x2fu, 0xfdu, 0x00u, exponent << 3})
+      bytes.push_back(static_cast<std::byte>(byte));
     const unsigned block = (12u << 3) | 1u;  // last, raw, 12 bytes
     for (const int shift : {0, 8, 16}) bytes.push_back(static_cast<std::byte>((block >> shift) & 0xff));
     bytes.resize(bytes.size() + 12);

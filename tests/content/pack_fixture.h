@@ -95,7 +95,8 @@ inline bool same_probe(const ProbeMap& a, const ProbeMap& b) {
 }
 
 inline bool same_level(const RoomLevel& a, const RoomLevel& b) {
-  return a.origin_m == b.origin_m && std::equal(a.probes.begin(), a.probes.end(), b.probes.begin(), b.probes.end(), same_probe);
+  return a.origin_m == b.origin_m &&
+         std::equal(a.probes.begin(), a.probes.end(), b.probes.begin(), b.probes.end(), same_probe);
 }
 
 // Two rooms side by side, joined by a door; `levels[room]` lists each room's chunks. Everything else is fixed.

@@ -1,5 +1,5 @@
-// The format, kept from changing unnoticed: a chunk written by hand from the text of pack_format.h alone, and a manifest
-// kept as text. What earlier versions wrote must be read for ever.
+// The format, kept from changing unnoticed: a chunk written by hand from the text of pack_format.h alone, and a
+// manifest kept as text. What earlier versions wrote must be read for ever.
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -43,7 +43,8 @@ std::vector<Word> predicted(const std::vector<Word>& words, std::size_t side) {
   std::vector<Word> codes;
   for (std::size_t at = 0; at < words.size(); ++at) {
     const bool left = at % side > 0, up = at >= side;
-    const std::int64_t a = left ? words[at - 1] : 0, b = up ? words[at - side] : 0, c = left && up ? words[at - side - 1] : 0;
+    const std::int64_t a = left ? words[at - 1] : 0, b = up ? words[at - side] : 0,
+                       c = left && up ? words[at - side - 1] : 0;
     std::int64_t residual = (static_cast<std::int64_t>(words[at]) - (a + b - c)) % kModulus;
     if (residual < -kModulus / 2) residual += kModulus;
     if (residual >= kModulus / 2) residual -= kModulus;
@@ -132,8 +133,9 @@ constexpr const char* kManifest =
     R"json(0,0.5,0.0],[2.0,1.6,-2.0,0.25,-0.1]],"warnings":["the lamp has no light"]})json";
 
 Manifest golden_manifest() {
-  Manifest m = small_manifest({{{std::string(32, '1'), 8, 8, 800, 1600, -1.0}, {std::string(32, '2'), 16, 32, 900, 1700, 0.5}},
-                               {{std::string(32, '3'), 8, 8, 801, 1601, -1.0}}});
+  Manifest m =
+      small_manifest({{{std::string(32, '1'), 8, 8, 800, 1600, -1.0}, {std::string(32, '2'), 16, 32, 900, 1700, 0.5}},
+                      {{std::string(32, '3'), 8, 8, 801, 1601, -1.0}}});
   m.floor.nodes.resize(3);
   return m;
 }
@@ -162,7 +164,8 @@ TEST(PackGolden, PlanesCompressWell) {
       for (int i = 0; i <= n; ++i) {
         const glm::dvec3 q = octahedral_point(2.0 * i / n - 1.0, 2.0 * j / n - 1.0);
         // The nearest of six tilted walls: the greatest w = q . normal / distance.
-        const glm::dvec3 x = glm::normalize(glm::dvec3(0.8, 0.3, 0.52)), z = glm::normalize(glm::cross(x, {0.1, 1.0, 0.2}));
+        const glm::dvec3 x = glm::normalize(glm::dvec3(0.8, 0.3, 0.52)),
+                         z = glm::normalize(glm::cross(x, {0.1, 1.0, 0.2}));
         const glm::dvec3 y = glm::cross(z, x);
         double w = 0.0;
         for (const glm::dvec3& axis : {x, y, z}) {

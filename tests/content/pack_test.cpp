@@ -63,7 +63,8 @@ TEST(Pack, TwoWritesAreByteIdentical) {
   const TemporaryFolder folder("pack-twice");
   for (const char* name : {"a.probes", "b.probes"}) write_small_pack(folder.path() / name, 2);
   EXPECT_EQ(files_in(folder.path() / "a.probes/chunks"), files_in(folder.path() / "b.probes/chunks"));
-  EXPECT_EQ(read_file(folder.path() / "a.probes/pack.json", 1 << 20), read_file(folder.path() / "b.probes/pack.json", 1 << 20));
+  EXPECT_EQ(read_file(folder.path() / "a.probes/pack.json", 1 << 20),
+            read_file(folder.path() / "b.probes/pack.json", 1 << 20));
 }
 
 TEST(Pack, FinishRemovesWhatTheManifestDoesNotNameAndNothingElse) {
@@ -156,7 +157,8 @@ TEST(Pack, LinksAmongTheChunksReadOnlyWhatTheirNamesSay) {
   EXPECT_EQ(refused_with(folder.path() / "elsewhere"), "accepted");
   const std::string secret(sound.size(), 's');
   write_text(folder.path() / "secret", secret);
-  EXPECT_THAT(refused_with(folder.path() / "secret"), testing::AllOf(HasSubstr("damaged"), testing::Not(HasSubstr("sss"))));
+  EXPECT_THAT(refused_with(folder.path() / "secret"),
+              testing::AllOf(HasSubstr("damaged"), testing::Not(HasSubstr("sss"))));
   EXPECT_THAT(refused_with("/dev/zero"), HasSubstr("no regular file"));
   EXPECT_THAT(refused_with(chunks), HasSubstr("no regular file"));
   EXPECT_THAT(refused_with("nowhere"), HasSubstr("cannot read"));

@@ -98,7 +98,8 @@ TEST(Placement, WhatHeadsSeeSomeProbeOfTheirCellSees) {
 TEST(Placement, NothingStandsBehindAPane) {
   BoxScene boxes;
   boxes.room({0, 0, 0}, {4, 2.5f, 4});
-  // Take out the wall at x = 4 (the third and fourth triangle pairs are across x) and put a pane that rays pass through.
+  // Take out the wall at x = 4 (the third and fourth triangle pairs are across x) and put a pane that rays pass
+  // through.
   boxes.scene.triangles.erase(boxes.scene.triangles.begin() + 2, boxes.scene.triangles.begin() + 4);
   boxes.scene.triangle_material.resize(boxes.scene.triangles.size());
   boxes.scene.triangle_object.resize(boxes.scene.triangles.size());

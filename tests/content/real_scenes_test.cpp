@@ -46,10 +46,11 @@ TEST_P(RealScene, HasTheFloorAndProbesThatAPersonWouldExpect) {
   ASSERT_FALSE(space.floor.nodes.empty());
   const VisibilityShare share = measure_visibility(rays, space, placement, 500);
   const double floor_m2 = double(space.floor.nodes.size()) * space.floor.cell_m * space.floor.cell_m;
-  fmt::print("{}: scale {}, cell {:.3f} m, floor {:.1f} m2, tour {} poses, space {:.2f} s, placement {:.2f} s\n", GetParam().file,
-             scene.scale, space.floor.cell_m, floor_m2, space.tour.size(), space_s, placement_s);
-  fmt::print("  {}\n  surface seen by the cell's probes {:.3f}, probes that see a head {:.1f}, fewer than 3 for {:.3f}\n",
-             placement.statement, share.covered, share.mean_views, share.few_views);
+  fmt::print("{}: scale {}, cell {:.3f} m, floor {:.1f} m2, tour {} poses, space {:.2f} s, placement {:.2f} s\n",
+             GetParam().file, scene.scale, space.floor.cell_m, floor_m2, space.tour.size(), space_s, placement_s);
+  fmt::print(
+      "  {}\n  surface seen by the cell's probes {:.3f}, probes that see a head {:.1f}, fewer than 3 for {:.3f}\n",
+      placement.statement, share.covered, share.mean_views, share.few_views);
   for (const std::string& warning : space.warnings) fmt::print("  warning: {}\n", warning);
 
   EXPECT_GE(floor_m2, GetParam().least_floor_m2);

@@ -32,7 +32,8 @@ Manifest row_of_rooms(std::uint32_t count) {
     m.rooms.push_back(room);
     const double x = 4.0 * k;
     if (k > 0) {
-      m.portals.push_back({static_cast<int>(k) - 1, static_cast<int>(k), {{x, 0, 1.5}, {x, 0, 2.5}, {x, 2, 2.5}, {x, 2, 1.5}}});
+      m.portals.push_back(
+          {static_cast<int>(k) - 1, static_cast<int>(k), {{x, 0, 1.5}, {x, 0, 2.5}, {x, 2, 2.5}, {x, 2, 1.5}}});
     }
   }
   return m;
@@ -100,7 +101,9 @@ class Simulation {
     }
     return sum;
   }
-  bool resident(std::uint32_t room, std::uint32_t level) const { return status_[room][level] == LevelStatus::kResident; }
+  bool resident(std::uint32_t room, std::uint32_t level) const {
+    return status_[room][level] == LevelStatus::kResident;
+  }
   void fail(LevelKey key) { status_[key.room][key.level] = LevelStatus::kFailed; }
   // What it takes, whatever the manifest says.
   void lie(LevelKey key, std::uint64_t true_bytes) { true_bytes_[key] = true_bytes; }
@@ -210,7 +213,8 @@ TEST(Residency, WithinTheBudgetTheFinestLevelThatFits) {
 
 TEST(Residency, AWalkThereAndBackKeepsTheWalkersRoomAndTheBudget) {
   const Manifest m = row_of_rooms(12);
-  for (const std::uint64_t budget : {7 * kCoarse, 7 * kCoarse + kMiddle, 7 * kCoarse + 2 * kFine, 12 * kFine, kUnlimitedBudget}) {
+  for (const std::uint64_t budget :
+       {7 * kCoarse, 7 * kCoarse + kMiddle, 7 * kCoarse + 2 * kFine, 12 * kFine, kUnlimitedBudget}) {
     Simulation s(m, with_budget(budget));
     s.settle(standing(0.5));
     const auto walk = [&](double from, double to) {

@@ -182,7 +182,9 @@ TEST(Space, TheInsideOfAWardrobeIsNotAPlaceToBe) {
   BoxScene boxes;
   boxes.room({0, 0, 0}, {5, 2.5f, 5}).authored_room("only", {0, 0, 0}, {5, 2.5, 5});
   boxes.solid({0, 0, 0}, {1.2f, 2.2f, 0.05f}).solid({0, 0, 1.15f}, {1.2f, 2.2f, 1.2f});
-  boxes.solid({0, 0, 0}, {0.05f, 2.2f, 1.2f}).solid({1.15f, 0, 0}, {1.2f, 2.2f, 1.2f}).solid({0, 2.15f, 0}, {1.2f, 2.2f, 1.2f});
+  boxes.solid({0, 0, 0}, {0.05f, 2.2f, 1.2f})
+      .solid({1.15f, 0, 0}, {1.2f, 2.2f, 1.2f})
+      .solid({0, 2.15f, 0}, {1.2f, 2.2f, 1.2f});
   const Space space = find(boxes.scene);
   EXPECT_GE(space.floor.find({3, 1.6, 3}), 0);
   EXPECT_LT(space.floor.find({0.6, 1.6, 0.6}), 0);

@@ -36,7 +36,8 @@ inline std::array<std::uint32_t, 8> probes_around(const ProbeGrid& grid, glm::dv
 }
 
 // Heads 1.1 to 1.75 m over random floor nodes, 40 random directions each.
-inline VisibilityShare measure_visibility(const RayScene& rays, const Space& space, const Placement& placement, int heads) {
+inline VisibilityShare measure_visibility(const RayScene& rays, const Space& space, const Placement& placement,
+                                          int heads) {
   VisibilityShare share;
   std::uint32_t state = 12345;
   const auto unit = [&] { return (next_random(state) >> 8) / 16777216.0; };

@@ -54,7 +54,8 @@ void trace(const RoomLevel& level) {
     require(answer.probe >= 0 && answer.probe < probes, "a ray's probe");
     require(answer.tries <= 16 && answer.lookups <= most_lookups, "a ray's look-ups");
     unsigned reads = 0;
-    const glm::vec3 light = f32::ray_radiance(set.grid(), dials, answer, hi, lo, d, 1e-3f * static_cast<float>(k), reads);
+    const glm::vec3 light =
+        f32::ray_radiance(set.grid(), dials, answer, hi, lo, d, 1e-3f * static_cast<float>(k), reads);
     for (int c = 0; c < 3; ++c) require(std::isfinite(light[c]) && light[c] >= 0.0f, "a ray's light");
   }
 }

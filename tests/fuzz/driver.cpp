@@ -107,7 +107,8 @@ class Numbers {
 
 // One small change. Numbers that programmers forget about come more often than chance would bring them.
 void mutate(Input& input, const std::vector<Input>& corpus, Numbers& numbers) {
-  constexpr std::uint32_t kEdges[] = {0, 1, 0x7f, 0x80, 0xff, 0x7fff, 0xffff, 0x10000, 0x7fffffff, 0x80000000, 0xffffffff, 0x7fc00000, 0xff800000};
+  constexpr std::uint32_t kEdges[] = {0,       1,          0x7f,       0x80,       0xff,       0x7fff,    0xffff,
+                                      0x10000, 0x7fffffff, 0x80000000, 0xffffffff, 0x7fc00000, 0xff800000};
   if (input.empty()) input.push_back(numbers.byte());
   const std::size_t at = numbers.below(input.size());
   const std::size_t count = std::min(input.size() - at, 1 + numbers.below(16));
@@ -127,7 +128,8 @@ void mutate(Input& input, const std::vector<Input>& corpus, Numbers& numbers) {
       break;
     }
     case 5: {  // decimal digits, as JSON has them
-      const std::string digits = std::to_string(static_cast<std::int64_t>(numbers.below(~std::size_t{0})) >> numbers.below(64));
+      const std::string digits =
+          std::to_string(static_cast<std::int64_t>(numbers.below(~std::size_t{0})) >> numbers.below(64));
       const auto digit = std::find_if(here, input.end(), [](std::uint8_t c) { return c >= '0' && c <= '9'; });
       const auto end = std::find_if(digit, input.end(), [](std::uint8_t c) { return c < '0' || c > '9'; });
       if (digit == input.end() || input.size() > kMost_bytes) break;

@@ -55,7 +55,8 @@ void check_geometry(const Scene& scene) {
   for (const glm::uvec3& t : scene.triangles) {
     require(t.x < vertices && t.y < vertices && t.z < vertices, "an index is out of range");
   }
-  for (const std::uint32_t m : scene.triangle_material) require(m < scene.materials.size(), "a material is out of range");
+  for (const std::uint32_t m : scene.triangle_material)
+    require(m < scene.materials.size(), "a material is out of range");
   require(finite(scene.bounds.lower_m) && finite(scene.bounds.upper_m), "bounds");
 }
 
@@ -69,8 +70,9 @@ void check_materials(const Scene& scene) {
   for (const Texture& texture : scene.textures) {
     require(!texture.levels.empty(), "a texture without levels");
     for (const Texture::Level& level : texture.levels) {
-      require(level.rgba.size() == 4 * static_cast<std::size_t>(level.width_px) * static_cast<std::size_t>(level.height_px),
-              "a texture's size");
+      require(
+          level.rgba.size() == 4 * static_cast<std::size_t>(level.width_px) * static_cast<std::size_t>(level.height_px),
+          "a texture's size");
     }
   }
 }

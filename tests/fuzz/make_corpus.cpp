@@ -1,5 +1,5 @@
-// Writes the corpora that libFuzzer and driver.cpp start from: small packs and scenes of our own making, the same bytes on
-// every run. usage: make_fuzz_corpus FOLDER (tests/fuzz/corpus). Regression inputs there (found-*) stay.
+// Writes the corpora that libFuzzer and driver.cpp start from: small packs and scenes of our own making, the same bytes
+// on every run. usage: make_fuzz_corpus FOLDER (tests/fuzz/corpus). Regression inputs there (found-*) stay.
 #include <meshoptimizer.h>
 
 #include <cstdio>
@@ -114,13 +114,15 @@ GltfScene everything() {
 GltfScene odd_accessors() {
   GltfScene s = GltfScene::floor();
   const int indices = s.add_accessor(bytes_of<std::uint8_t>({0, 1, 3, 2}), 5121, "SCALAR", 4);
-  const int normals = s.add_accessor(bytes_of<std::int8_t>({0, 127, 0, 0, 0, 127, 0, 0, 0, 127, 0, 0, 0, 127, 0, 0}), 5120, "VEC3", 4);
+  const int normals =
+      s.add_accessor(bytes_of<std::int8_t>({0, 127, 0, 0, 0, 127, 0, 0, 0, 127, 0, 0, 0, 127, 0, 0}), 5120, "VEC3", 4);
   s.json["accessors"][normals]["normalized"] = true;
   s.json["bufferViews"][normals]["byteStride"] = 4;
   Json sparse = {{"componentType", 5126}, {"type", "VEC3"}, {"count", 4}};
-  sparse["sparse"] = {{"count", 2},
-                      {"indices", {{"bufferView", s.add_view(bytes_of<std::uint16_t>({1, 2}))}, {"componentType", 5123}}},
-                      {"values", {{"bufferView", s.add_view(bytes_of<float>({4, 0, 0, 4, 0, -4}))}}}};
+  sparse["sparse"] = {
+      {"count", 2},
+      {"indices", {{"bufferView", s.add_view(bytes_of<std::uint16_t>({1, 2}))}, {"componentType", 5123}}},
+      {"values", {{"bufferView", s.add_view(bytes_of<float>({4, 0, 0, 4, 0, -4}))}}}};
   s.json["accessors"].push_back(sparse);
   const int positions = static_cast<int>(s.json["accessors"].size()) - 1;
   s.add_mesh({{"attributes", {{"POSITION", positions}, {"NORMAL", normals}}}, {"mode", 6}});

@@ -122,7 +122,8 @@ RoomLevel repaired_level(std::span<const std::byte> damaged) {
     probe.radiance.r = static_cast<int>(counts.radiance_r);
   }
   // Whatever has no section in the bytes is read from none: zeros.
-  for (std::uint32_t kind = 1; kind <= 6; ++kind) read_section(Source({}), static_cast<ChunkSection>(kind), counts, level);
+  for (std::uint32_t kind = 1; kind <= 6; ++kind)
+    read_section(Source({}), static_cast<ChunkSection>(kind), counts, level);
 
   Source table(header.left());
   Source body(damaged.subspan(std::min<std::size_t>(chunk_header_bytes(section_count), damaged.size())));
@@ -132,7 +133,8 @@ RoomLevel repaired_level(std::span<const std::byte> damaged) {
     table.take(8);
     const auto stored = table.value<std::uint64_t>();
     const std::uint64_t raw_bytes = counts.probes * section_bytes_per_probe(kind, counts);
-    const std::vector<std::byte> bytes = body.take(std::min<std::uint64_t>(packed ? stored : raw_bytes, body.left().size()));
+    const std::vector<std::byte> bytes =
+        body.take(std::min<std::uint64_t>(packed ? stored : raw_bytes, body.left().size()));
     if (!packed) {
       read_section(Source(bytes), kind, counts, level);
     } else {

@@ -21,14 +21,16 @@
 #include "content/probe/tracer_f64.h"
 #include "content/scene/procedural/procedural.h"
 #include "content/scene/space.h"
+#include "content/stability/agreement.h"
+#include "content/stability/walk.h"
 #include "render/ray_batch.h"
-#include "support/brute_compare.h"
 #include "support/low_discrepancy.h"
 
 namespace probewalk {
 namespace {
 
-constexpr int kRays = 100000;
+// A sanitizer looks at the code's ways, not at the figures, and takes ten times as long for each ray.
+constexpr int kRays = PROBEWALK_SANITIZED ? 10000 : 100000;
 constexpr int kCells = 128;
 
 Scene load_house() {
@@ -38,12 +40,8 @@ Scene load_house() {
   return load_scene(file);
 }
 
-const char* name_of(int cls) {
-  static constexpr const char* kNames[] = {"hit", "miss", "unknown", "behind"};
-  return kNames[cls];
-}
-
-const char* name_of(BruteAnswer::Class cls) { return name_of(static_cast<int>(cls)); }
+using stability::Answer;
+using stability::class_name;
 
 // Counts differences by "this -> that" and how many of them are ties.
 class Table {
@@ -103,9 +101,7 @@ TEST(HouseTracer, AllCompilationsAndBruteForceAgree) {
 
   // Both share the records' slopes, which are 16-bit codes (1.5e-6 of w): a jump closer than that is a tie in double too.
   // 1. One walk each, against brute force over every piece of the probe's surface.
-  std::vector<int> cls32(kRays), cls64(kRays);
-  std::vector<BruteAnswer> brute_answers(kRays);
-  std::vector<double> t32(kRays), t64(kRays);
+  std::vector<Answer> singles(kRays), twices(kRays), truths(kRays);
   std::vector<char> tie32(kRays), tie64(kRays);
   std::vector<std::unique_ptr<BruteForceProbe>> brutes(geometry.size());
   tbb::parallel_for(std::size_t{0}, geometry.size(), [&](std::size_t p) { brutes[p] = std::make_unique<BruteForceProbe>(geometry[p]); });
@@ -119,23 +115,28 @@ TEST(HouseTracer, AllCompilationsAndBruteForceAgree) {
     const ProbeRecord& record = set.records()[static_cast<std::size_t>(p)];
     const glm::vec3 x = f32::relative_origin(record, hi, lo);
     const f32::WalkState a = f32::walk_probe(record, x, d, 0.0f, kStartLevel);
-    const f64::WalkState b = f64::walk_probe(record, glm::dvec3(x), glm::dvec3(d), 0.0, kStartLevel);
-    cls32[k] = a.status;
-    t32[k] = a.t;
-    cls64[k] = b.status;
-    t64[k] = b.t;
-    const BruteForceProbe& brute = *brutes[static_cast<std::size_t>(p)];
-    brute_answers[k] = brute.trace(glm::dvec3(x), glm::dvec3(d));
-    if (!test::same_answer(cls32[k], t32[k], brute_answers[k])) tie32[k] = test::is_tie(brute, glm::dvec3(x), glm::dvec3(d), 0.0, cls32[k], t32[k], 2e-6);
-    if (!test::same_answer(cls64[k], t64[k], brute_answers[k])) tie64[k] = test::is_tie(brute, glm::dvec3(x), glm::dvec3(d), 0.0, cls64[k], t64[k], 2e-6);
+    singles[k] = {a.status, a.t, a.t_safe, glm::dvec3(a.plane), a.lookups};
+    twices[k] = stability::walk_in_double(record, glm::dvec3(x), glm::dvec3(d), 0.0, kStartLevel);
+    const stability::Reference by_force = [&](glm::dvec3 at, glm::dvec3 towards) {
+      return stability::from_brute_force(brutes[static_cast<std::size_t>(p)]->trace(at, towards));
+    };
+    truths[k] = by_force(glm::dvec3(x), glm::dvec3(d));
+    const auto is_tie = [&](const Answer& answer) {
+      return !stability::same_answer(answer, truths[k], 1.0) &&
+             stability::is_tie(by_force, glm::dvec3(x), glm::dvec3(d), answer, 1.0);
+    };
+    tie32[k] = is_tie(singles[k]);
+    tie64[k] = is_tie(twices[k]);
   });
   Table single("one walk, C++ float against brute force in double"), twice("one walk, C++ double against brute force in double");
   std::vector<double> errors;
   for (int k = 0; k < kRays; ++k) {
-    const std::string to = std::string(" -> ") + name_of(brute_answers[k].cls);
-    if (!test::same_answer(cls32[k], t32[k], brute_answers[k])) single.add(name_of(cls32[k]) + to, tie32[k]);
-    if (!test::same_answer(cls64[k], t64[k], brute_answers[k])) twice.add(name_of(cls64[k]) + to, tie64[k]);
-    if (cls32[k] == kClassHit && brute_answers[k].cls == BruteAnswer::Class::kHit) errors.push_back(std::abs(t32[k] - brute_answers[k].t) / brute_answers[k].t);
+    const std::string to = std::string(" -> ") + class_name(truths[k].cls);
+    if (!stability::same_answer(singles[k], truths[k], 1.0)) single.add(class_name(singles[k].cls) + to, tie32[k]);
+    if (!stability::same_answer(twices[k], truths[k], 1.0)) twice.add(class_name(twices[k].cls) + to, tie64[k]);
+    if (singles[k].cls == kClassHit && truths[k].cls == kClassHit) {
+      errors.push_back(std::abs(singles[k].t - truths[k].t) / truths[k].t);
+    }
   }
   single.print(kRays);
   twice.print(kRays);
@@ -173,14 +174,14 @@ TEST(HouseTracer, AllCompilationsAndBruteForceAgree) {
     };
     const auto jumps = [&](int cls, double t) {
       for (int j = 0; j < 32; ++j) {
-        const f64::RayAnswer beside = in_double(origin + 2e-6 * test::hammersley_direction(j, 32),
-                                                glm::dvec3(d) + 2e-6 * test::hammersley_direction((j * 13) % 32, 32));
+        const f64::RayAnswer beside = in_double(origin + 2e-6 * stability::hammersley_direction(j, 32),
+                                                glm::dvec3(d) + 2e-6 * stability::hammersley_direction((j * 13) % 32, 32));
         if (!differs(cls, t, beside.cls, beside.t)) return true;
       }
       return false;
     };
-    if (differs(g.answer, g.t_m, a.cls, a.t)) glsl.add(std::string(name_of(g.answer)) + " -> " + name_of(a.cls), jumps(g.answer, g.t_m));
-    if (differs(a.cls, a.t, b.cls, b.t)) precision.add(std::string(name_of(a.cls)) + " -> " + name_of(b.cls), jumps(a.cls, a.t));
+    if (differs(g.answer, g.t_m, a.cls, a.t)) glsl.add(std::string(class_name(g.answer)) + " -> " + class_name(a.cls), jumps(g.answer, g.t_m));
+    if (differs(a.cls, a.t, b.cls, b.t)) precision.add(std::string(class_name(a.cls)) + " -> " + class_name(b.cls), jumps(a.cls, a.t));
   }
   std::sort(lookup_counts.begin(), lookup_counts.end());
   glsl.print(kRays);

@@ -41,7 +41,8 @@ class FrameRendererTest : public test::GpuTest {
     return {.tracer = {.extent_px = kExtent, .views = views, .aov = aov}, .target_format = kFormat};
   }
   Image make_target(std::uint32_t views, VkFormat format = kFormat) const {
-    return Image(device, {format, kExtent, views, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT});
+    return Image(device,
+                 {format, kExtent, views, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT});
   }
   static FrameTarget target_of(const Image& image) {
     FrameTarget target;
@@ -57,7 +58,8 @@ class FrameRendererTest : public test::GpuTest {
     const glm::dquat turned = glm::angleAxis(yaw_rad, glm::dvec3(0, 1, 0)) * glm::angleAxis(-0.2, glm::dvec3(1, 0, 0));
     for (std::uint32_t k = 0; k < count; ++k) {
       const ViewFov fov{-0.7f, 0.6f + 0.05f * static_cast<float>(k), 0.5f, -0.55f};
-      views.push_back(view_constants(head_m + glm::dvec3(0.063 * k, 0, 0), turned, fov, static_cast<int>(kExtent.width)));
+      views.push_back(
+          view_constants(head_m + glm::dvec3(0.063 * k, 0, 0), turned, fov, static_cast<int>(kExtent.width)));
     }
     return views;
   }
@@ -202,8 +204,8 @@ TEST_F(FrameRendererTest, KeepsTwoFramesInFlightWhileRoomsStream) {
 // Depth read back, a map a layer.
 std::vector<std::vector<float>> read_depth(const Device& device, const Image& image) {
   const ImageOptions& options = image.options();
-  const auto bytes = read_image(device, image.handle(), VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL, options.format,
-                                options.extent_px, options.layers);
+  const auto bytes = read_image(device, image.handle(), VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL,
+                                options.format, options.extent_px, options.layers);
   const std::size_t texels = std::size_t{options.extent_px.width} * options.extent_px.height;
   std::vector<std::vector<float>> layers(options.layers, std::vector<float>(texels));
   for (std::size_t i = 0; i < texels * options.layers; ++i) {

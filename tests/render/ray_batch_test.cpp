@@ -70,7 +70,9 @@ TEST_F(RayBatchTest, SplitsLongListsAndKeepsTheirOrder) {
   for (std::size_t k = 0; k < once.size(); ++k) ASSERT_EQ(split[rays.size() - once.size() + k].t_m, once[k].t_m);
 }
 
-TEST_F(RayBatchTest, AnswersNothingWithNothing) { EXPECT_TRUE(RayBatch(device).trace(store, dials, {}, 0.01f).empty()); }
+TEST_F(RayBatchTest, AnswersNothingWithNothing) {
+  EXPECT_TRUE(RayBatch(device).trace(store, dials, {}, 0.01f).empty());
+}
 
 }  // namespace
 }  // namespace probewalk

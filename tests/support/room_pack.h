@@ -29,7 +29,8 @@ inline ProbeRadiance room_radiance(const RayScene& rays, glm::dvec3 position_m, 
       for (int i = 0; i < mip; ++i) {
         const glm::dvec3 q = octahedral_point((2 * i + 1.0) / mip - 1, (2 * j + 1.0) / mip - 1);
         const SurfaceHit hit = rays.closest(glm::vec3(position_m), glm::vec3(q));
-        const glm::vec3 color = hit.hit ? room_pattern(glm::vec3(position_m + q * static_cast<double>(hit.t))) : glm::vec3(0.9f);
+        const glm::vec3 color =
+            hit.hit ? room_pattern(glm::vec3(position_m + q * static_cast<double>(hit.t))) : glm::vec3(0.9f);
         radiance.rgb9e5.push_back(encode_rgb9e5(color * static_cast<float>(kRoomPackScale)));
         if (mip == r) radiance.texel_w.push_back(hit.hit ? encode_texel_w(1.0f / hit.t) : std::uint16_t{0});
       }
@@ -88,7 +89,8 @@ inline void write_room_pack(const std::filesystem::path& folder) {
   room.probe_count = 8;
   for (std::uint32_t k = 0; k < 8; ++k) {
     manifest.grid.probe.push_back(k);
-    manifest.probe_positions_m.push_back(manifest.grid.origin_m + manifest.grid.spacing_m * glm::dvec3(k & 1, k >> 1 & 1, k >> 2));
+    manifest.probe_positions_m.push_back(manifest.grid.origin_m +
+                                         manifest.grid.spacing_m * glm::dvec3(k & 1, k >> 1 & 1, k >> 2));
   }
   PackWriter writer(folder);
   for (const int n : {16, 64}) {

@@ -22,12 +22,16 @@ inline std::vector<std::string> trace_faults(const nlohmann::json& trace) {
   std::vector<std::string> faults;
   std::map<std::pair<int, int>, std::vector<Span>> tracks;
   std::map<std::pair<int, int>, std::string> names;
-  if (!trace.is_object() || !trace.contains("traceEvents") || !trace["traceEvents"].is_array()) return {"no traceEvents"};
-  const auto ns = [](const nlohmann::json& us) { return static_cast<std::int64_t>(std::llround(us.get<double>() * 1e3)); };
+  if (!trace.is_object() || !trace.contains("traceEvents") || !trace["traceEvents"].is_array())
+    return {"no traceEvents"};
+  const auto ns = [](const nlohmann::json& us) {
+    return static_cast<std::int64_t>(std::llround(us.get<double>() * 1e3));
+  };
   for (const nlohmann::json& event : trace["traceEvents"]) {
     const auto fault = [&](const char* what) { faults.push_back(what + (": " + event.dump())); };
     const auto has_number = [&](const char* key) { return event.contains(key) && event[key].is_number(); };
-    if (!event.contains("name") || !event["name"].is_string() || event["name"].get<std::string>().empty()) fault("no name");
+    if (!event.contains("name") || !event["name"].is_string() || event["name"].get<std::string>().empty())
+      fault("no name");
     if (!has_number("pid") || !has_number("tid")) {
       fault("no pid or tid");
       continue;

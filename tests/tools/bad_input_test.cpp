@@ -13,7 +13,9 @@ namespace {
 namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 
-std::size_t lines(const std::string& text) { return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n')); }
+std::size_t lines(const std::string& text) {
+  return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
+}
 
 void write(const fs::path& file, const std::string& text) {
   fs::create_directories(file.parent_path());
@@ -38,7 +40,8 @@ TEST(BadInput, MissingScene) {
 TEST(BadInput, ForeignScene) {
   const fs::path dir = fresh_folder("foreign-scene");
   write(dir / "picture.glb", "\x89PNG\r\n\x1a\n and so on");
-  expect_refused(run_probewalk(dir, {"bake", (dir / "picture.glb").string(), "-o", (dir / "x.probes").string(), "-q"}), 3, "picture.glb");
+  expect_refused(run_probewalk(dir, {"bake", (dir / "picture.glb").string(), "-o", (dir / "x.probes").string(), "-q"}),
+                 3, "picture.glb");
   EXPECT_FALSE(fs::exists(dir / "x.probes"));
 }
 
@@ -47,13 +50,17 @@ TEST(BadInput, TruncatedScene) {
   ASSERT_EQ(run_probewalk(dir, {"scene", "box-room", "-o", (dir / "box.glb").string()}).exit_code, 0);
   std::string bytes = read_text(dir / "box.glb");
   write(dir / "half.glb", bytes.substr(0, bytes.size() / 2));
-  expect_refused(run_probewalk(dir, {"bake", (dir / "half.glb").string(), "-o", (dir / "x.probes").string(), "-q"}), 3, "half.glb");
+  expect_refused(run_probewalk(dir, {"bake", (dir / "half.glb").string(), "-o", (dir / "x.probes").string(), "-q"}), 3,
+                 "half.glb");
 }
 
 TEST(BadInput, UnknownRequiredExtensionIsNamed) {
   const fs::path dir = fresh_folder("required-extension");
-  write(dir / "future.gltf", R"({"asset":{"version":"2.0"},"extensionsUsed":["EXT_from_the_future"],"extensionsRequired":["EXT_from_the_future"]})");
-  expect_refused(run_probewalk(dir, {"bake", (dir / "future.gltf").string(), "-o", (dir / "x.probes").string(), "-q"}), 3, "EXT_from_the_future");
+  write(
+      dir / "future.gltf",
+      R"({"asset":{"version":"2.0"},"extensionsUsed":["EXT_from_the_future"],"extensionsRequired":["EXT_from_the_future"]})");
+  expect_refused(run_probewalk(dir, {"bake", (dir / "future.gltf").string(), "-o", (dir / "x.probes").string(), "-q"}),
+                 3, "EXT_from_the_future");
 }
 
 TEST(BadInput, PackNameWithoutItsEnding) {
@@ -98,7 +105,8 @@ TEST(BadInput, UnknownSampleSceneListsTheKnown) {
 TEST(BadInput, TraceNamesAMissingPack) {
   const fs::path dir = fresh_folder("trace-no-pack");
   write(dir / "rays.txt", "0 1 0 0 0 -1\n");
-  expect_refused(run_probewalk(dir, {"trace", (dir / "no.probes").string(), "--rays", (dir / "rays.txt").string()}), 3, "no.probes");
+  expect_refused(run_probewalk(dir, {"trace", (dir / "no.probes").string(), "--rays", (dir / "rays.txt").string()}), 3,
+                 "no.probes");
 }
 
 TEST(Help, TeachesEveryCommand) {

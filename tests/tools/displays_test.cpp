@@ -30,7 +30,9 @@ const fs::path& pack() {
   return folder;
 }
 
-bool installed(const std::string& program) { return std::system(("command -v " + program + " >/dev/null 2>&1").c_str()) == 0; }
+bool installed(const std::string& program) {
+  return std::system(("command -v " + program + " >/dev/null 2>&1").c_str()) == 0;
+}
 
 // Runs lines of bash in `folder`; $probewalk and $pack are the executable and the pack.
 RunResult run_script(const fs::path& folder, const std::string& script) {
@@ -38,7 +40,8 @@ RunResult run_script(const fs::path& folder, const std::string& script) {
                                       << "'\npack='" << pack().string() << "'\nwith_monado='" << PROBEWALK_SOURCE_DIR
                                       << "/tools/lib/with-monado.sh'\n" << script << "\n";
   const std::string file = (folder / "script.sh").string();
-  const int status = std::system(("bash '" + file + "' >'" + folder.string() + "/stdout' 2>'" + folder.string() + "/stderr'").c_str());
+  const int status =
+      std::system(("bash '" + file + "' >'" + folder.string() + "/stdout' 2>'" + folder.string() + "/stderr'").c_str());
   RunResult result;
   result.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
   result.out = read_text(folder / "stdout");
@@ -55,7 +58,8 @@ const char* const kVirtualScreen =
 
 // One pose with the views of both eyes.
 void write_pose(const fs::path& file) {
-  json line = {{"t_s", 0.0}, {"position_m", {-1.0, 1.55, 1.2}}, {"orientation_xyzw", {0.0, -0.2, 0.0, 0.9797958971132712}}};
+  json line = {
+      {"t_s", 0.0}, {"position_m", {-1.0, 1.55, 1.2}}, {"orientation_xyzw", {0.0, -0.2, 0.0, 0.9797958971132712}}};
   for (const double x : {-1.03, -0.97}) {
     line["views"].push_back({{"position_m", {x, 1.55, 1.2}},
                              {"orientation_xyzw", {0.0, -0.2, 0.0, 0.9797958971132712}},
@@ -96,22 +100,26 @@ TEST(Displays, HeadsetShowsTheSamePictureAsOffscreen) {
   if (!installed("monado-service")) GTEST_SKIP() << "monado-service is not installed";
   const fs::path folder = fresh_folder("displays-headset");
   write_pose(folder / "pose.jsonl");
-  const RunResult run = run_script(folder, std::string("bash \"$with_monado\" null \"$probewalk\" walk \"$pack\" --display headset") + kPose);
+  const RunResult run = run_script(
+      folder, std::string("bash \"$with_monado\" null \"$probewalk\" walk \"$pack\" --display headset") + kPose);
   ASSERT_EQ(run.exit_code, 0) << run.err;
   expect_same_pictures(folder, offscreen_pictures());
 }
 
 TEST(Displays, HeadsetWalkIsFocusedAndTheValidationLayersAreSilent) {
   if (!installed("monado-service")) GTEST_SKIP() << "monado-service is not installed";
-  const bool has_layer = std::system("ls /usr/share/openxr/1/api_layers/explicit.d/*core_validation* >/dev/null 2>&1") == 0;
+  const bool has_layer =
+      std::system("ls /usr/share/openxr/1/api_layers/explicit.d/*core_validation* >/dev/null 2>&1") == 0;
   const fs::path folder = fresh_folder("displays-monado");
   const std::string layer =
       has_layer ? "export XR_ENABLE_API_LAYERS=XR_APILAYER_LUNARG_core_validation XR_CORE_VALIDATION_EXPORT_TYPE=text "
                   "XR_CORE_VALIDATION_FILE_NAME=$PWD/openxr.txt\n"
                 : "";
   const RunResult run = run_script(
-      folder, layer + "bash \"$with_monado\" null \"$probewalk\" walk \"$pack\" --display auto --eye-size 64x48 "
-                      "--frames 60 --report report --record walked.jsonl --save-frames pictures --save-every 59 --validate");
+      folder,
+      layer +
+          "bash \"$with_monado\" null \"$probewalk\" walk \"$pack\" --display auto --eye-size 64x48 "
+          "--frames 60 --report report --record walked.jsonl --save-frames pictures --save-every 59 --validate");
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_THAT(run.err, HasSubstr("display: headset: Monado"));
   EXPECT_THAT(run.err, HasSubstr("depth as D32_SFLOAT"));
@@ -139,29 +147,31 @@ const char* const kMortalService =
     "  rm -f \"$XDG_RUNTIME_DIR/monado_comp_ipc\"\n"
     "  XRT_COMPOSITOR_NULL=1 SIMULATED_ENABLE=1 XRT_NO_STDIN=1 monado-service >>monado.log 2>&1 </dev/null &\n"
     "  service=$!\n"
-    "  for _ in $(seq 100); do grep -q \" 00010000 .* $XDG_RUNTIME_DIR/monado_comp_ipc\\$\" /proc/net/unix && break; sleep 0.1; done\n"
+    "  for _ in $(seq 100); do grep -q \" 00010000 .* $XDG_RUNTIME_DIR/monado_comp_ipc\\$\" /proc/net/unix && break; "
+    "sleep 0.1; done\n"
     "}\n"
-    "await() { for _ in $(seq 200); do [ \"$(grep -c \"$2\" \"$1\" 2>/dev/null)\" -ge \"$3\" ] && return; sleep 0.1; done; echo \"no $2\" >&2; }\n"
+    "await() { for _ in $(seq 200); do [ \"$(grep -c \"$2\" \"$1\" 2>/dev/null)\" -ge \"$3\" ] && return; sleep 0.1; "
+    "done; echo \"no $2\" >&2; }\n"
     "start_service\n";
 
 TEST(Displays, WalkGoesOnWithoutARuntimeThatDiesAndTakesItBack) {
   if (!installed("monado-service")) GTEST_SKIP() << "monado-service is not installed";
   const fs::path folder = fresh_folder("displays-killed");
-  const RunResult run = run_script(
-      folder, std::string(kMortalService) +
-      "unset DISPLAY WAYLAND_DISPLAY\n"
-      "\"$probewalk\" walk \"$pack\" --display headset --eye-size 64x48 --record walked.jsonl --report report 2>walk.log &\n"
-      "walk=$!\n"
-      "await walk.log FOCUSED 1\n"
-      "for k in 1 2; do\n"
-      "  kill -KILL $service; wait $service 2>/dev/null\n"
-      "  await walk.log 'goes on: offscreen' $k\n"
-      "  start_service\n"
-      "  await walk.log 'goes on: headset' $k\n"
-      "  await walk.log FOCUSED $((k + 1))\n"
-      "done\n"
-      "kill -INT $walk; wait $walk; code=$?\n"
-      "kill $service; rm -rf \"$XDG_RUNTIME_DIR\"\nexit $code");
+  const RunResult run = run_script(folder, std::string(kMortalService) +
+                                               "unset DISPLAY WAYLAND_DISPLAY\n"
+                                               "\"$probewalk\" walk \"$pack\" --display headset --eye-size 64x48 "
+                                               "--record walked.jsonl --report report 2>walk.log &\n"
+                                               "walk=$!\n"
+                                               "await walk.log FOCUSED 1\n"
+                                               "for k in 1 2; do\n"
+                                               "  kill -KILL $service; wait $service 2>/dev/null\n"
+                                               "  await walk.log 'goes on: offscreen' $k\n"
+                                               "  start_service\n"
+                                               "  await walk.log 'goes on: headset' $k\n"
+                                               "  await walk.log FOCUSED $((k + 1))\n"
+                                               "done\n"
+                                               "kill -INT $walk; wait $walk; code=$?\n"
+                                               "kill $service; rm -rf \"$XDG_RUNTIME_DIR\"\nexit $code");
   EXPECT_EQ(run.exit_code, 5) << run.err << read_text(folder / "walk.log");
   EXPECT_TRUE(fs::exists(folder / "walked.jsonl"));
   EXPECT_FALSE(fs::exists(folder / "walked.jsonl.part"));
@@ -178,15 +188,15 @@ TEST(Displays, WalkGoesOnWithoutARuntimeThatDiesAndTakesItBack) {
 TEST(Displays, MirrorShowsWhatTheWearerSeesAndTheWindowTakesOver) {
   if (!installed("monado-service") || !installed("Xvfb")) GTEST_SKIP() << "monado-service or Xvfb is not installed";
   const fs::path folder = fresh_folder("displays-mirror");
-  const RunResult run = run_script(
-      folder, std::string(kVirtualScreen) + kMortalService +
-      "\"$probewalk\" walk \"$pack\" --display headset --mirror both --eye-size 64x48 --report report --validate 2>walk.log &\n"
-      "walk=$!\n"
-      "await walk.log FOCUSED 1\nsleep 2\n"
-      "kill -KILL $service; wait $service 2>/dev/null\n"
-      "await walk.log 'goes on: window' 1\nsleep 1\n"
-      "kill -INT $walk; wait $walk; code=$?\n"
-      "rm -rf \"$XDG_RUNTIME_DIR\"\nexit $code");
+  const RunResult run = run_script(folder, std::string(kVirtualScreen) + kMortalService +
+                                               "\"$probewalk\" walk \"$pack\" --display headset --mirror both "
+                                               "--eye-size 64x48 --report report --validate 2>walk.log &\n"
+                                               "walk=$!\n"
+                                               "await walk.log FOCUSED 1\nsleep 2\n"
+                                               "kill -KILL $service; wait $service 2>/dev/null\n"
+                                               "await walk.log 'goes on: window' 1\nsleep 1\n"
+                                               "kill -INT $walk; wait $walk; code=$?\n"
+                                               "rm -rf \"$XDG_RUNTIME_DIR\"\nexit $code");
   EXPECT_EQ(run.exit_code, 5) << run.err << read_text(folder / "walk.log");
   EXPECT_THAT(read_text(folder / "walk.log"), Not(HasSubstr("Validation")));
   EXPECT_THAT(read_text(folder / "walk.log"), Not(HasSubstr("VUID")));

@@ -1,6 +1,6 @@
-// Golden pictures of the sample house, baked small and rendered in stereo. Tolerance: at most 0.1 % of the pixels may be
-// off by more than 5 of 255 in any channel. `PROBEWALK_UPDATE_GOLDEN=1 tools/test -R golden` renews them; a failure leaves
-// the picture and a difference picture in the build's test-output/tools/golden.
+// Golden pictures of the sample house, baked small and rendered in stereo. Tolerance: at most 0.1 % of the pixels may
+// be off by more than 5 of 255 in any channel. `PROBEWALK_UPDATE_GOLDEN=1 tools/test -R golden` renews them; a failure
+// leaves the picture and a difference picture in the build's test-output/tools/golden.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -39,13 +39,14 @@ TEST(Golden, HouseLooksAsItDid) {
   ASSERT_EQ(views.size(), 6u);
   const fs::path dir = fresh_folder("golden");
   ASSERT_EQ(run_probewalk(dir, {"scene", "house", "-o", (dir / "house.glb").string()}).exit_code, 0);
-  const RunResult baked = run_probewalk(dir, {"bake", (dir / "house.glb").string(), "-o", (dir / "house.probes").string(), "--resolution", "128",
-                                              "--max-probes", "60", "--samples", "32", "--bounces", "2", "-q"});
+  const RunResult baked =
+      run_probewalk(dir, {"bake", (dir / "house.glb").string(), "-o", (dir / "house.probes").string(), "--resolution",
+                          "128", "--max-probes", "60", "--samples", "32", "--bounces", "2", "-q"});
   ASSERT_EQ(baked.exit_code, 0) << baked.err;
   for (const View& view : views) {
     const fs::path picture = dir / (view.name + ".png");
-    const RunResult r = run_probewalk(dir, {"render", (dir / "house.probes").string(), "-o", picture.string(), "--pose", view.pose, "--stereo",
-                                            "--size", "160x120", "--fov", "75"});
+    const RunResult r = run_probewalk(dir, {"render", (dir / "house.probes").string(), "-o", picture.string(), "--pose",
+                                            view.pose, "--stereo", "--size", "160x120", "--fov", "75"});
     ASSERT_EQ(r.exit_code, 0) << r.err;
     const fs::path golden = fs::path(PROBEWALK_SOURCE_DIR) / "tests/golden" / (view.name + ".png");
     if (std::getenv("PROBEWALK_UPDATE_GOLDEN") != nullptr) {
@@ -53,7 +54,8 @@ TEST(Golden, HouseLooksAsItDid) {
       fs::copy_file(picture, golden, fs::copy_options::overwrite_existing);
       continue;
     }
-    ASSERT_TRUE(fs::exists(golden)) << golden << " is missing; PROBEWALK_UPDATE_GOLDEN=1 tools/test -R golden writes it";
+    ASSERT_TRUE(fs::exists(golden)) << golden
+                                    << " is missing; PROBEWALK_UPDATE_GOLDEN=1 tools/test -R golden writes it";
     const ImageRgb8 expected = read_png(golden), actual = read_png(picture);
     ASSERT_EQ(actual.width_px, expected.width_px);
     ASSERT_EQ(actual.height_px, expected.height_px);
@@ -61,7 +63,8 @@ TEST(Golden, HouseLooksAsItDid) {
     std::vector<float> difference(actual.rgb.size() / 3);
     for (std::size_t p = 0; p < difference.size(); ++p) {
       int worst = 0;
-      for (std::size_t c = 0; c < 3; ++c) worst = std::max(worst, std::abs(int{actual.rgb[3 * p + c]} - int{expected.rgb[3 * p + c]}));
+      for (std::size_t c = 0; c < 3; ++c)
+        worst = std::max(worst, std::abs(int{actual.rgb[3 * p + c]} - int{expected.rgb[3 * p + c]}));
       difference[p] = static_cast<float>(worst);
       failing += worst > kTolerance;
     }
@@ -69,7 +72,8 @@ TEST(Golden, HouseLooksAsItDid) {
     if (share > kFailingShare) {
       const fs::path file = dir / (view.name + "-difference.png");
       write_png(file, false_colour(difference, actual.width_px, actual.height_px, 32.0f));
-      ADD_FAILURE() << view.name << ": " << 100.0 * share << " % of the pixels differ by more than " << kTolerance << "; look at " << file;
+      ADD_FAILURE() << view.name << ": " << 100.0 * share << " % of the pixels differ by more than " << kTolerance
+                    << "; look at " << file;
     }
   }
 }

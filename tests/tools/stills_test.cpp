@@ -39,7 +39,8 @@ std::vector<float> channel_of(const fs::path& file, const char* name, std::size_
   Imf::InputFile in(file.c_str());
   std::vector<float> values(width * kHeight);
   Imf::FrameBuffer frame;
-  frame.insert(name, Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(values.data()), sizeof(float), sizeof(float) * width));
+  frame.insert(name,
+               Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(values.data()), sizeof(float), sizeof(float) * width));
   in.setFrameBuffer(frame);
   in.readPixels(0, kHeight - 1);
   return values;
@@ -67,7 +68,8 @@ TEST(Stills, DepthIsTheDistanceAlongTheViewsAxis) {
   const fs::path dir = fresh_folder("stills-depth");
   // Out of the window in the wall at x = 3: hits, and sky.
   ASSERT_EQ(render(dir / "a.exr", {"--pose", "0.5,1.5,0.3,-90,0", "--stereo", "--aov", "distance,depth"}).exit_code, 0);
-  const auto distance_m = channel_of(dir / "a.exr", "distance", 2 * kWidth), depth_m = channel_of(dir / "a.exr", "Z", 2 * kWidth);
+  const auto distance_m = channel_of(dir / "a.exr", "distance", 2 * kWidth),
+             depth_m = channel_of(dir / "a.exr", "Z", 2 * kWidth);
   const double tangent = std::tan(glm::radians(kFov_deg / 2));
   std::size_t hits = 0, misses = 0;
   for (int y = 0; y < kHeight; ++y) {

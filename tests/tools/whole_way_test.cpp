@@ -26,8 +26,9 @@ const fs::path& sample_pack() {
     const fs::path dir = fresh_folder("whole-way");
     const RunResult scene = run_probewalk(dir, {"scene", "two-rooms", "-o", (dir / "two.glb").string()});
     if (scene.exit_code != 0) throw std::runtime_error(scene.err);
-    const RunResult baked = run_probewalk(dir, {"bake", (dir / "two.glb").string(), "-o", (dir / "two.probes").string(), "--resolution", "128",
-                                                "--max-probes", "12", "--samples", "32", "--bounces", "2", "--json"});
+    const RunResult baked =
+        run_probewalk(dir, {"bake", (dir / "two.glb").string(), "-o", (dir / "two.probes").string(), "--resolution",
+                            "128", "--max-probes", "12", "--samples", "32", "--bounces", "2", "--json"});
     if (baked.exit_code != 0) throw std::runtime_error(baked.err);
     if (!json::accept(baked.out)) throw std::runtime_error("bake --json printed no JSON: " + baked.out);
     return dir / "two.probes";
@@ -49,12 +50,14 @@ TEST(WholeWay, InfoTellsWhatTheContractPromises) {
   const RunResult r = run_probewalk(dir, {"info", sample_pack().string(), "--json"});
   ASSERT_EQ(r.exit_code, 0) << r.err;
   const json info = json::parse(r.out);
-  for (const char* key : {"format_version", "scale", "bounds", "rooms", "features", "credits", "bytes_disk", "bytes_device"}) {
+  for (const char* key :
+       {"format_version", "scale", "bounds", "rooms", "features", "credits", "bytes_disk", "bytes_device"}) {
     EXPECT_TRUE(info.contains(key)) << key;
   }
   ASSERT_EQ(info["rooms"].size(), 2u);
   for (const json& room : info["rooms"]) {
-    for (const char* key : {"id", "name", "bounds", "probes", "portals", "levels"}) EXPECT_TRUE(room.contains(key)) << key;
+    for (const char* key : {"id", "name", "bounds", "probes", "portals", "levels"})
+      EXPECT_TRUE(room.contains(key)) << key;
     ASSERT_FALSE(room["levels"].empty());
     for (const char* key : {"geometry_size", "radiance_size", "bytes_disk", "bytes_device", "error"}) {
       EXPECT_TRUE(room["levels"][0].contains(key)) << key;
@@ -96,7 +99,8 @@ TEST(WholeWay, TraceAnswersLineByLine) {
 
 TEST(WholeWay, RaysAreCheckedLineByLine) {
   const fs::path dir = fresh_folder("bad-rays");
-  for (const char* bad : {"0 1 0 0 0 0", "0 1 nan 0 0 -1", "0 1 0 0 0", "0 1 0 0 0 -1 7", "a b c d e f", "1e30 1 0 0 0 -1"}) {
+  for (const char* bad :
+       {"0 1 0 0 0 0", "0 1 nan 0 0 -1", "0 1 0 0 0", "0 1 0 0 0 -1 7", "a b c d e f", "1e30 1 0 0 0 -1"}) {
     std::ofstream(dir / "rays.txt") << "0 1 0 0 0 -1\n" << bad << "\n";
     const RunResult r = run_probewalk(dir, {"trace", sample_pack().string(), "--rays", (dir / "rays.txt").string()});
     EXPECT_EQ(r.exit_code, 3) << bad;
@@ -109,8 +113,9 @@ TEST(WholeWay, TwoBakesAreByteIdentical) {
   const fs::path dir = fresh_folder("twice");
   const fs::path scene = sample_pack().parent_path() / "two.glb";
   for (const char* threads : {"1", "2"}) {
-    const RunResult r = run_probewalk(dir, {"bake", scene.string(), "-o", (dir / (std::string("t") + threads + ".probes")).string(), "--resolution",
-                                            "32", "--max-probes", "6", "--samples", "16", "--bounces", "1", "-q", "--threads", threads});
+    const RunResult r = run_probewalk(
+        dir, {"bake", scene.string(), "-o", (dir / (std::string("t") + threads + ".probes")).string(), "--resolution",
+              "32", "--max-probes", "6", "--samples", "16", "--bounces", "1", "-q", "--threads", threads});
     ASSERT_EQ(r.exit_code, 0) << r.err;
   }
   EXPECT_EQ(pack_files(dir / "t1.probes"), pack_files(dir / "t2.probes"));
@@ -120,7 +125,9 @@ TEST(WholeWay, AnInterruptedBakeGoesOn) {
   const fs::path dir = fresh_folder("interrupted");
   const fs::path scene = sample_pack().parent_path() / "two.glb";
   const fs::path pack = dir / "cut.probes";
-  const std::vector<std::string> command{"bake", scene.string(), "-o", pack.string(), "--resolution", "256", "--max-probes", "10", "--samples", "16", "--bounces", "1"};
+  const std::vector<std::string> command{"bake",         scene.string(), "-o",           pack.string(),
+                                         "--resolution", "256",          "--max-probes", "10",
+                                         "--samples",    "16",           "--bounces",    "1"};
   const pid_t child = start_probewalk(dir, command);
   std::this_thread::sleep_for(std::chrono::milliseconds(1500));
   kill(child, SIGINT);
@@ -138,24 +145,36 @@ TEST(WholeWay, AnInterruptedBakeGoesOn) {
 
 TEST(WholeWay, AnOffscreenWalkLeavesAReport) {
   const fs::path dir = fresh_folder("walk");
-  const RunResult r = run_probewalk(dir, {"walk", sample_pack().string(), "--display", "offscreen", "--frames", "40", "--eye-size", "80x60",
-                                          "--samples", "2", "--report", (dir / "report").string()});
+  const RunResult r =
+      run_probewalk(dir, {"walk", sample_pack().string(), "--display", "offscreen", "--frames", "40", "--eye-size",
+                          "80x60", "--samples", "2", "--report", (dir / "report").string()});
   ASSERT_EQ(r.exit_code, 0) << r.err;
   const json summary = json::parse(read_text(dir / "report/summary.json"));
-  for (const char* key : {"schema", "command", "machine", "device", "runtime", "display", "eye_width", "eye_height", "views", "method", "period_ns",
-                          "frames", "warmup_frames", "missed", "discarded", "not_rendered", "stale_run_max", "within_budget_fraction",
-                          "clock_error_ns", "instrumentation_cost_fraction", "percentiles", "streaming"}) {
+  for (const char* key : {"schema",         "command",
+                          "machine",        "device",
+                          "runtime",        "display",
+                          "eye_width",      "eye_height",
+                          "views",          "method",
+                          "period_ns",      "frames",
+                          "warmup_frames",  "missed",
+                          "discarded",      "not_rendered",
+                          "stale_run_max",  "within_budget_fraction",
+                          "clock_error_ns", "instrumentation_cost_fraction",
+                          "percentiles",    "streaming"}) {
     EXPECT_TRUE(summary.contains(key)) << key;
   }
   EXPECT_EQ(summary["frames"].get<int>() + summary["warmup_frames"].get<int>(), 40);
   EXPECT_EQ(summary["display"], "offscreen");
   EXPECT_EQ(summary["samples"], 2);
-  for (const char* key : {"frame", "cpu_busy", "cpu_wait", "gpu_busy", "gpu_trace", "prediction_horizon", "deadline_margin", "pose_error_mm", "pose_error_deg"}) {
+  for (const char* key : {"frame", "cpu_busy", "cpu_wait", "gpu_busy", "gpu_trace", "prediction_horizon",
+                          "deadline_margin", "pose_error_mm", "pose_error_deg"}) {
     ASSERT_TRUE(summary["percentiles"].contains(key)) << key;
-    for (const char* p : {"n", "p50", "p90", "p95", "p99", "p999", "max"}) EXPECT_TRUE(summary["percentiles"][key].contains(p)) << key << p;
+    for (const char* p : {"n", "p50", "p90", "p95", "p99", "p999", "max"})
+      EXPECT_TRUE(summary["percentiles"][key].contains(p)) << key << p;
   }
-  for (const char* key : {"bytes", "rooms_loaded", "coarse_frame_fraction", "need_to_resident_p50_ns", "need_to_resident_p99_ns",
-                          "frame_thread_p99_ns", "device_bytes_max", "device_budget_bytes"}) {
+  for (const char* key :
+       {"bytes", "rooms_loaded", "coarse_frame_fraction", "need_to_resident_p50_ns", "need_to_resident_p99_ns",
+        "frame_thread_p99_ns", "device_bytes_max", "device_budget_bytes"}) {
     EXPECT_TRUE(summary["streaming"].contains(key)) << key;
   }
   const std::string csv = read_text(dir / "report/frames.csv");
@@ -172,8 +191,8 @@ TEST(WholeWay, StillsGetMoreRaysAtEdgesWhenAsked) {
   std::map<std::string, std::string> pictures;
   for (const char* samples : {"1", "4"}) {
     const fs::path picture = dir / (std::string(samples) + ".png");
-    const RunResult r = run_probewalk(dir, {"render", sample_pack().string(), "-o", picture.string(), "--size", "160x120", "--samples", samples,
-                                            "--aov", "rays", "--json"});
+    const RunResult r = run_probewalk(dir, {"render", sample_pack().string(), "-o", picture.string(), "--size",
+                                            "160x120", "--samples", samples, "--aov", "rays", "--json"});
     ASSERT_EQ(r.exit_code, 0) << r.err;
     const json report = json::parse(r.out);
     EXPECT_EQ(report["samples"], std::stoi(samples));
@@ -193,7 +212,8 @@ TEST(WholeWay, StillsAreRepeatableAndNotBlack) {
   const fs::path dir = fresh_folder("stills");
   std::string last;
   for (const char* name : {"a.png", "b.png"}) {
-    const RunResult r = run_probewalk(dir, {"render", sample_pack().string(), "-o", (dir / name).string(), "--size", "160x120", "--stereo"});
+    const RunResult r = run_probewalk(
+        dir, {"render", sample_pack().string(), "-o", (dir / name).string(), "--size", "160x120", "--stereo"});
     ASSERT_EQ(r.exit_code, 0) << r.err;
     const std::string bytes = read_text(dir / name);
     EXPECT_GT(bytes.size(), 4000u) << "a flat picture compresses to less";

@@ -9,8 +9,8 @@
 namespace probewalk {
 namespace {
 
-// Two rooms of 4 x 2.5 x 3 m with a wall of 0.2 m between them at x in [-0.1, 0.1], a table in the first one; a probe in
-// each room's middle.
+// Two rooms of 4 x 2.5 x 3 m with a wall of 0.2 m between them at x in [-0.1, 0.1], a table in the first one; a probe
+// in each room's middle.
 struct TwoRooms {
   TwoRooms() {
     test::SceneBuilder builder;

@@ -14,7 +14,8 @@ namespace probewalk {
 namespace {
 
 // A floor of 0.05 m columns over [0, size) m; `height` gives the floor's y, NaN = no floor there.
-FloorMap make_floor(glm::dvec2 size_m, const std::function<double(double x, double z)>& height, float headroom_m = 2.5f) {
+FloorMap make_floor(glm::dvec2 size_m, const std::function<double(double x, double z)>& height,
+                    float headroom_m = 2.5f) {
   FloorMap floor;
   floor.cell_m = 0.05;
   floor.columns = glm::ivec2(glm::round(size_m / floor.cell_m));

@@ -27,7 +27,8 @@ using testing::HasSubstr;
 
 const fs::path& pack() {
   static const fs::path folder = [] {
-    const fs::path made = fs::path(PROBEWALK_TEST_OUTPUT_DIR) / ("xr-room-" + std::to_string(getpid()) + ".probes");  // tests run side by side
+    const fs::path made = fs::path(PROBEWALK_TEST_OUTPUT_DIR) /
+                          ("xr-room-" + std::to_string(getpid()) + ".probes");  // tests run side by side
     fs::remove_all(made);
     test::write_room_pack(made);
     return made;
@@ -101,7 +102,8 @@ TEST(WalkOffscreen, RecordsEveryStageInOrder) {
   std::int64_t last_end = 0;
   for (const FrameRecord& frame : result.ledger.frames()) {
     EXPECT_GE(frame.wait.begin, last_end);
-    const Interval stages[] = {frame.wait, frame.begin, frame.locate_early, frame.record, frame.locate_late, frame.submit, frame.end};
+    const Interval stages[] = {frame.wait,        frame.begin,  frame.locate_early, frame.record,
+                               frame.locate_late, frame.submit, frame.end};
     std::int64_t time = frame.wait.begin;
     for (const Interval& stage : stages) {
       EXPECT_GE(stage.begin, time);
@@ -206,7 +208,9 @@ class DoomedSource final : public FrameSource {
   SourceState poll() override { return whole_->poll(); }
   FrameTiming wait() override { return whole_->wait(); }
   void begin(FrameTiming& timing) override { whole_->begin(timing); }
-  std::vector<ViewPose> locate(const FrameTiming& timing, ViewPose* head) override { return whole_->locate(timing, head); }
+  std::vector<ViewPose> locate(const FrameTiming& timing, ViewPose* head) override {
+    return whole_->locate(timing, head);
+  }
   VkExtent2D view_extent() const override { return whole_->view_extent(); }
   std::uint32_t view_count() const override { return whole_->view_count(); }
   VkFormat color_format() const override { return whole_->color_format(); }

@@ -36,5 +36,6 @@ void add_walk_command(CLI::App& app, CommonOptions& common);
 void add_render_command(CLI::App& app, CommonOptions& common);
 void add_trace_command(CLI::App& app, CommonOptions& common);
 void add_report_command(CLI::App& app, CommonOptions& common);
+void add_stability_command(CLI::App& app, CommonOptions& common);
 
 }  // namespace probewalk

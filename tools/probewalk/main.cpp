@@ -58,6 +58,7 @@ int run(int argc, char** argv) {
   add_render_command(app, common);
   add_trace_command(app, common);
   add_report_command(app, common);
+  add_stability_command(app, common);
   app.require_subcommand(0, 1);
   try {
     app.parse(argc, argv);

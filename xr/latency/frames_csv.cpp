@@ -109,7 +109,8 @@ bool parse(std::string_view text, T& value) {
 }
 
 [[noreturn]] void bad_line(const std::string& file, std::size_t number, const std::string& why) {
-  throw BadInput(fmt::format("{}, line {}: {}; give a directory that `probewalk walk --report` wrote", file, number, why));
+  throw BadInput(
+      fmt::format("{}, line {}: {}; give a directory that `probewalk walk --report` wrote", file, number, why));
 }
 
 void set(const Column& column, std::string_view cell, FrameRecord& frame, const std::string& file, std::size_t number) {

@@ -15,7 +15,8 @@ namespace {
 constexpr const char* kCounts[] = {"missed", "discarded", "stale_run"};
 
 [[noreturn]] void bad_gate(std::string_view part) {
-  throw BadUsage(fmt::format("--gate: '{}' is no condition; write for example p99=11.1ms, gpu_busy.p95=8ms or missed=0", part));
+  throw BadUsage(
+      fmt::format("--gate: '{}' is no condition; write for example p99=11.1ms, gpu_busy.p95=8ms or missed=0", part));
 }
 
 const PercentileRank* rank_named(std::string_view name) {

@@ -15,8 +15,8 @@ struct GateCondition {
   double limit = 0.0;    // at most: nanoseconds, mm, degrees, or a count
 };
 
-// Comma-separated NAME=LIMIT. NAME is missed, discarded, stale_run, a percentile (of `frame`), or QUANTITY.PERCENTILE; a
-// time's limit ends in ns, us, ms or s. Throws BadUsage naming the part that is none of these.
+// Comma-separated NAME=LIMIT. NAME is missed, discarded, stale_run, a percentile (of `frame`), or QUANTITY.PERCENTILE;
+// a time's limit ends in ns, us, ms or s. Throws BadUsage naming the part that is none of these.
 std::vector<GateCondition> parse_gate(std::string_view text);
 
 // One line for each condition that does not hold. A percentile that n cannot carry, or that was not measured, does not.

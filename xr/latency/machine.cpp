@@ -9,6 +9,7 @@
 #include <fstream>
 #include <string_view>
 #include <thread>
+#include <vector>
 
 #include "xr/latency/run_info.h"
 
@@ -82,6 +83,15 @@ std::string command_line(int argc, const char* const* argv) {
     line += '\'';
   }
   return line;
+}
+
+std::string own_command_line() {
+  std::ifstream file("/proc/self/cmdline", std::ios::binary);
+  std::vector<std::string> words;
+  for (std::string word; std::getline(file, word, '\0');) words.push_back(word);
+  std::vector<const char*> pointers;
+  for (const std::string& word : words) pointers.push_back(word.c_str());
+  return command_line(static_cast<int>(pointers.size()), pointers.data());
 }
 
 }  // namespace probewalk

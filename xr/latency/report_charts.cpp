@@ -39,8 +39,8 @@ std::string open_svg(const Plot& plot, const std::string& label) {
 }
 
 void line(std::string& svg, const char* kind, double x0, double y0, double x1, double y1) {
-  fmt::format_to(std::back_inserter(svg), "<line class=\"{}\" x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\"/>", kind,
-                 x0, y0, x1, y1);
+  fmt::format_to(std::back_inserter(svg),
+                 "<line class=\"{}\" x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\"/>", kind, x0, y0, x1, y1);
 }
 
 void text(std::string& svg, const char* kind, double x, double y, const std::string& words) {
@@ -79,8 +79,8 @@ std::string step_path(const std::vector<Column>& columns, std::int64_t Column::*
                       const auto& y_of) {
   std::string path;
   for (std::size_t c = 0; c < columns.size(); ++c) {
-    fmt::format_to(std::back_inserter(path), "{}{:.1f} {:.1f}H{:.1f}", c == 0 ? "M" : "L", x0 + static_cast<double>(c) * dx,
-                   y_of(columns[c].*member), x0 + static_cast<double>(c + 1) * dx);
+    fmt::format_to(std::back_inserter(path), "{}{:.1f} {:.1f}H{:.1f}", c == 0 ? "M" : "L",
+                   x0 + static_cast<double>(c) * dx, y_of(columns[c].*member), x0 + static_cast<double>(c + 1) * dx);
   }
   return path;
 }
@@ -131,13 +131,15 @@ std::string timeline_svg(const Ledger& ledger, const Summary& summary, const Cha
   };
 
   if (const std::size_t warmup = ledger.first_counted(); warmup > 0) {
-    fmt::format_to(std::back_inserter(svg), "<rect class=\"warmup\" x=\"{:.1f}\" y=\"{}\" width=\"{:.1f}\" height=\"{}\"/>",
-                   plot.x0(), plot.y1(), x_of_frame(warmup) - plot.x0(), plot.y0() - plot.y1());
+    fmt::format_to(std::back_inserter(svg),
+                   "<rect class=\"warmup\" x=\"{:.1f}\" y=\"{}\" width=\"{:.1f}\" height=\"{}\"/>", plot.x0(),
+                   plot.y1(), x_of_frame(warmup) - plot.x0(), plot.y0() - plot.y1());
     text(svg, "warmuplabel", plot.x0() + 4, plot.y1() - 6, fmt::format("{} warm-up frames, left out", warmup));
   }
   draw_y_axis(svg, plot, max_ms, y_of_ms);
   const std::string frame_path = step_path(columns, &Column::frame, plot.x0(), dx, y_of);
-  fmt::format_to(std::back_inserter(svg), "<path class=\"framearea\" d=\"{}V{}H{}Z\"/>", frame_path, plot.y0(), plot.x0());
+  fmt::format_to(std::back_inserter(svg), "<path class=\"framearea\" d=\"{}V{}H{}Z\"/>", frame_path, plot.y0(),
+                 plot.x0());
   fmt::format_to(std::back_inserter(svg), "<path class=\"frameline\" d=\"{}\"/>", frame_path);
   fmt::format_to(std::back_inserter(svg), "<path class=\"gpuline\" d=\"{}\"/>",
                  step_path(columns, &Column::gpu, plot.x0(), dx, y_of));
@@ -155,7 +157,8 @@ std::string timeline_svg(const Ledger& ledger, const Summary& summary, const Cha
     const double x = plot.x0() + (static_cast<double>(c) + 0.5) * dx;
     const double mark = std::max(dx, 1.5);
     const auto tick = [&](const char* kind, double y, double height) {
-      fmt::format_to(std::back_inserter(svg), "<rect class=\"{}\" x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{}\"/>", kind,
+      fmt::format_to(std::back_inserter(svg),
+                     "<rect class=\"{}\" x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{}\"/>", kind,
                      x - mark / 2, y, mark, height);
     };
     if (column.missed > 0) tick("missed", plot.y0() + 3, 10);
@@ -171,10 +174,12 @@ std::string timeline_svg(const Ledger& ledger, const Summary& summary, const Cha
   // What a pointer over a column tells.
   for (std::size_t c = 0; c < columns.size(); ++c) {
     const Column& column = columns[c];
-    std::string words = column.first == column.last
-                            ? fmt::format("frame {}", frames[column.first].frame_id)
-                            : fmt::format("frames {} to {}, largest", frames[column.first].frame_id, frames[column.last].frame_id);
-    words += fmt::format(": frame {} ms, CPU busy {} ms, GPU busy {} ms", in_ms(column.frame), in_ms(column.cpu), in_ms(column.gpu));
+    std::string words =
+        column.first == column.last
+            ? fmt::format("frame {}", frames[column.first].frame_id)
+            : fmt::format("frames {} to {}, largest", frames[column.first].frame_id, frames[column.last].frame_id);
+    words += fmt::format(": frame {} ms, CPU busy {} ms, GPU busy {} ms", in_ms(column.frame), in_ms(column.cpu),
+                         in_ms(column.gpu));
     if (column.missed > 0) words += fmt::format(", {} missed", column.missed);
     if (column.discarded > 0) words += fmt::format(", {} discarded", column.discarded);
     fmt::format_to(std::back_inserter(svg),
@@ -224,7 +229,8 @@ std::string histogram_svg(const QuantitySummary& quantity, std::int64_t period_n
     if (bins[b] < 0.005) continue;
     const bool beyond = b + 1 == kBins && quantity.histogram.max() > scale.histogram_max_ns;
     fmt::format_to(std::back_inserter(svg),
-                   "<rect class=\"{}\" x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\"><title>{}{} ms: about {:.0f}</title></rect>",
+                   "<rect class=\"{}\" x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\"><title>{}{} ms: "
+                   "about {:.0f}</title></rect>",
                    beyond ? "bar beyond" : "bar", plot.x0() + static_cast<double>(b) * dx, y_of(bins[b]), dx - 0.6,
                    plot.y0() - y_of(bins[b]), beyond ? "at least " : "from ",
                    in_ms(static_cast<std::int64_t>(static_cast<double>(b) * width_ns)), bins[b]);

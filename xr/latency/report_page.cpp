@@ -36,7 +36,8 @@ std::string percentile_cell(const QuantitySummary& quantity, const PercentileRan
 }
 
 void tile(std::string& html, const std::string& value, const std::string& label, const char* kind = "") {
-  fmt::format_to(std::back_inserter(html), "<div class=\"tile {}\"><b>{}</b><span>{}</span></div>\n", kind, value, label);
+  fmt::format_to(std::back_inserter(html), "<div class=\"tile {}\"><b>{}</b><span>{}</span></div>\n", kind, value,
+                 label);
 }
 
 std::string tiles(const Run& run, const Summary& summary) {
@@ -45,8 +46,9 @@ std::string tiles(const Run& run, const Summary& summary) {
   for (const PercentileRank& rank : percentile_ranks()) {
     if (rank.p != 0.5 && rank.p != 0.99) continue;
     const auto value = frame.histogram.percentile(rank);
-    tile(html, value ? in_ms(*value) + " <small>ms</small>" : kNone,
-         value ? fmt::format("{} frame", rank.label) : fmt::format("{} frame: needs {} frames", rank.label, rank.n_min));
+    tile(
+        html, value ? in_ms(*value) + " <small>ms</small>" : kNone,
+        value ? fmt::format("{} frame", rank.label) : fmt::format("{} frame: needs {} frames", rank.label, rank.n_min));
   }
   if (summary.period_ns > 0) {
     tile(html, in_ms(summary.period_ns) + " <small>ms</small>",
@@ -91,10 +93,12 @@ std::string banners(const Run& run, const Summary& summary) {
 
 std::string percentile_table(const Summary& summary) {
   std::string html = "<div class=\"scroll\"><table><tr><th>quantity</th><th>n</th>";
-  for (const PercentileRank& rank : percentile_ranks()) fmt::format_to(std::back_inserter(html), "<th>{}</th>", rank.label);
+  for (const PercentileRank& rank : percentile_ranks())
+    fmt::format_to(std::back_inserter(html), "<th>{}</th>", rank.label);
   html += "<th>max</th><th>min</th></tr>\n";
   for (const QuantitySummary& quantity : summary.quantities) {
-    fmt::format_to(std::back_inserter(html), "<tr><td>{}</td><td>{}</td>", heading(quantity), quantity.histogram.count());
+    fmt::format_to(std::back_inserter(html), "<tr><td>{}</td><td>{}</td>", heading(quantity),
+                   quantity.histogram.count());
     for (const PercentileRank& rank : percentile_ranks()) html += "<td>" + percentile_cell(quantity, rank) + "</td>";
     for (const std::int64_t end : {quantity.histogram.max(), quantity.histogram.min()}) {
       html += "<td>" + (quantity.histogram.count() > 0 ? value_text(quantity, end) : kNone) + "</td>";
@@ -102,14 +106,16 @@ std::string percentile_table(const Summary& summary) {
     html += "</tr>\n";
   }
   return html +
-         "</table></div>\n<p class=\"soft\">From log-linear buckets, each within 1 %; max and min are exact (for the deadline margin, min is the worst). Up to p99 at least one "
-         "frame lies beyond the percentile shown; p99.9 needs 10 000 frames. n differs where a quantity does not exist for "
+         "</table></div>\n<p class=\"soft\">From log-linear buckets, each within 1 %; max and min are exact (for the "
+         "deadline margin, min is the worst). Up to p99 at least one "
+         "frame lies beyond the percentile shown; p99.9 needs 10 000 frames. n differs where a quantity does not exist "
+         "for "
          "every frame.</p>\n";
 }
 
 std::string counts_line(const Run& run, const Summary& summary) {
-  std::string text = fmt::format("{} frames counted, {} warm-up frames left out, {} discarded, {} not rendered", summary.frames,
-                                 summary.warmup_frames, summary.discarded, summary.not_rendered);
+  std::string text = fmt::format("{} frames counted, {} warm-up frames left out, {} discarded, {} not rendered",
+                                 summary.frames, summary.warmup_frames, summary.discarded, summary.not_rendered);
   if (run.ledger.options().has_deadlines) text += fmt::format(", {} refreshes missed", summary.missed);
   return "<p>" + text + ".</p>\n";
 }
@@ -126,8 +132,10 @@ std::string worst_table(const Summary& summary) {
                    frame.gpu_busy_ns ? in_ms(*frame.gpu_busy_ns) : kNone, frame.missed, html_escaped(frame.cause));
   }
   return html +
-         "</table></div>\n<p class=\"soft\">A frame's time runs from the start of the frame before to its own: it is filled "
-         "by the work of the frame before (whose CPU and GPU times stand here) and by its own wait. The cause is the stage "
+         "</table></div>\n<p class=\"soft\">A frame's time runs from the start of the frame before to its own: it is "
+         "filled "
+         "by the work of the frame before (whose CPU and GPU times stand here) and by its own wait. The cause is the "
+         "stage "
          "that grew most over its median.</p>\n";
 }
 
@@ -140,63 +148,78 @@ struct Fact {
 const std::vector<Fact>& facts() {
   static const std::vector<Fact> all = {
       {"pack", [](const Run& r, const Summary&) { return r.info.pack; }},
-      {"display", [](const Run& r, const Summary&) {
+      {"display",
+       [](const Run& r, const Summary&) {
          return r.info.display + (r.info.display_details.empty() ? "" : ": " + r.info.display_details);
        }},
-      {"display changes", [](const Run& r, const Summary&) {
+      {"display changes",
+       [](const Run& r, const Summary&) {
          std::string text;
          for (const DisplayChange& change : r.info.display_changes) {
-           text += fmt::format("{}frame {}: {} to {} ({}), {} ms without a picture", text.empty() ? "" : "; ", change.frame,
-                               change.from, change.to, change.reason, in_ms(change.gap_ns));
+           text += fmt::format("{}frame {}: {} to {} ({}), {} ms without a picture", text.empty() ? "" : "; ",
+                               change.frame, change.from, change.to, change.reason, in_ms(change.gap_ns));
          }
          return text;
        }},
       {"runtime", [](const Run& r, const Summary&) { return r.info.runtime; }},
-      {"refresh", [](const Run&, const Summary& s) {
-         return s.period_ns > 0 ? fmt::format("{:.2f} Hz ({} ms)", 1e9 / static_cast<double>(s.period_ns), in_ms(s.period_ns)) : "";
+      {"refresh",
+       [](const Run&, const Summary& s) {
+         return s.period_ns > 0
+                    ? fmt::format("{:.2f} Hz ({} ms)", 1e9 / static_cast<double>(s.period_ns), in_ms(s.period_ns))
+                    : "";
        }},
-      {"views", [](const Run& r, const Summary&) {
+      {"views",
+       [](const Run& r, const Summary&) {
          return fmt::format("{} of {} × {} px", r.info.views, r.info.eye_width, r.info.eye_height);
        }},
-      {"method", [](const Run& r, const Summary&) {
+      {"method",
+       [](const Run& r, const Summary&) {
          return r.info.method + (r.info.samples > 1 ? fmt::format(", {} rays a pixel at edges", r.info.samples) : "");
        }},
-      {"device", [](const Run& r, const Summary&) {
+      {"device",
+       [](const Run& r, const Summary&) {
          return r.info.device.name + (r.info.device.is_software ? " (software rasteriser)" : "");
        }},
-      {"driver", [](const Run& r, const Summary&) {
+      {"driver",
+       [](const Run& r, const Summary&) {
          return r.info.device.driver +
                 (r.info.device.api_version.empty() ? "" : ", Vulkan " + r.info.device.api_version);
        }},
-      {"clock error", [](const Run&, const Summary& s) {
+      {"clock error",
+       [](const Run&, const Summary& s) {
          return s.clock_error_ns ? fmt::format("at most {} ns between device and CLOCK_MONOTONIC", *s.clock_error_ns)
                                  : std::string("device clock not calibrated");
        }},
-      {"CPU", [](const Run& r, const Summary&) {
+      {"CPU",
+       [](const Run& r, const Summary&) {
          return fmt::format("{}, {} cores usable{}", r.info.machine.cpu, r.info.machine.cores,
                             r.info.machine.governor.empty() ? "" : ", governor " + r.info.machine.governor);
        }},
       {"memory", [](const Run& r, const Summary&) { return in_bytes(r.info.machine.memory_bytes); }},
-      {"system", [](const Run& r, const Summary&) {
-         return r.info.machine.operating_system + ", " + r.info.machine.kernel;
-       }},
+      {"system",
+       [](const Run& r, const Summary&) { return r.info.machine.operating_system + ", " + r.info.machine.kernel; }},
       {"build", [](const Run& r, const Summary&) { return r.info.build; }},
       {"started", [](const Run& r, const Summary&) { return r.info.started_utc; }},
-      {"instrumentation", [](const Run& r, const Summary&) {
+      {"instrumentation",
+       [](const Run& r, const Summary&) {
          return r.info.instrumentation_cost_fraction
                     ? percent(*r.info.instrumentation_cost_fraction) + " of frame time, from an on/off pair"
                     : std::string("its own cost was not measured in this run");
        }},
-      {"uploaded", [](const Run& r, const Summary& s) {
+      {"uploaded",
+       [](const Run& r, const Summary& s) {
          return fmt::format("{}, {} rooms loaded", in_bytes(s.bytes_uploaded), r.info.streaming.rooms_loaded);
        }},
-      {"device memory", [](const Run& r, const Summary& s) {
+      {"device memory",
+       [](const Run& r, const Summary& s) {
          return fmt::format("at most {} of {}", in_bytes(s.device_bytes_max),
                             r.info.streaming.device_budget_bytes > 0 ? in_bytes(r.info.streaming.device_budget_bytes)
                                                                      : std::string("no set budget"));
        }},
-      {"coarse frames", [](const Run&, const Summary& s) {
-         return s.coarse_frame_fraction ? percent(*s.coarse_frame_fraction) + " shown below the wanted level" : std::string();
+      {"coarse frames",
+       [](const Run&, const Summary& s) {
+         return s.coarse_frame_fraction ? percent(*s.coarse_frame_fraction) + " shown below the wanted level"
+                                        : std::string();
        }},
   };
   return all;
@@ -232,7 +255,8 @@ std::string comparison_table(std::span<const Run> runs, std::span<const Summary>
       const std::optional<double> value = value_of(summaries[i]);
       html += "<td>" + (value ? text_of(*value) : kNone);
       if (i > 0 && value && base && *base > 0.0) {
-        fmt::format_to(std::back_inserter(html), " <span class=\"soft\">{:+.1f} %</span>", 100.0 * (*value / *base - 1.0));
+        fmt::format_to(std::back_inserter(html), " <span class=\"soft\">{:+.1f} %</span>",
+                       100.0 * (*value / *base - 1.0));
       }
       html += "</td>";
     }
@@ -252,7 +276,9 @@ std::string comparison_table(std::span<const Run> runs, std::span<const Summary>
   }
   const auto count = [](double value) { return fmt::format("{:.0f}", value); };
   row("missed", "refreshes", [](const Summary& s) { return std::optional(static_cast<double>(s.missed)); }, count);
-  row("stale run", "longest", [](const Summary& s) { return std::optional(static_cast<double>(s.stale_run_max)); }, count);
+  row(
+      "stale run", "longest", [](const Summary& s) { return std::optional(static_cast<double>(s.stale_run_max)); },
+      count);
   row("within budget", "share", [](const Summary& s) { return s.within_budget_fraction; },
       [](double value) { return percent(value); });
   row("frames", "n", [](const Summary& s) { return std::optional(static_cast<double>(s.frames)); }, count);
@@ -274,7 +300,8 @@ std::string run_section(const Run& run, const Summary& summary, const ChartScale
   for (const char* name : {"frame", "cpu_busy", "gpu_busy"}) {
     html += histogram_svg(summary.quantity(name), summary.period_ns, scale) + "\n";
   }
-  html += "</div>\n<p class=\"soft\">Counts on a logarithmic axis. Dashed: the budget. Red: longer than the axis.</p>\n";
+  html +=
+      "</div>\n<p class=\"soft\">Counts on a logarithmic axis. Dashed: the budget. Red: longer than the axis.</p>\n";
   html += "<h2>Percentiles</h2>\n" + percentile_table(summary);
   html += "<h2>The longest frames and their causes</h2>\n" + worst_table(summary);
   html += "<h2>To repeat it</h2>\n<pre>" + html_escaped(run.info.command) + "</pre>\n";
@@ -290,24 +317,30 @@ std::string run_section(const Run& run, const Summary& summary, const ChartScale
 std::string definitions() {
   std::string html = "<h2>What the words mean</h2>\n<div class=\"scroll\"><table>";
   for (const QuantityDefinition& definition : quantity_definitions()) {
-    fmt::format_to(std::back_inserter(html), "<tr><td><code>{}</code></td><td class=\"words\">{}</td></tr>\n", definition.name,
-                   html_escaped(definition.text));
+    fmt::format_to(std::back_inserter(html), "<tr><td><code>{}</code></td><td class=\"words\">{}</td></tr>\n",
+                   definition.name, html_escaped(definition.text));
   }
   html +=
-      "<tr><td>within budget</td><td class=\"words\">CPU busy and GPU busy both at most one period; of rendered frames with "
+      "<tr><td>within budget</td><td class=\"words\">CPU busy and GPU busy both at most one period; of rendered frames "
+      "with "
       "both measured.</td></tr>\n"
-      "<tr><td>missed</td><td class=\"words\">Where predicted_display advanced by 1.5 periods or more between two frames: "
+      "<tr><td>missed</td><td class=\"words\">Where predicted_display advanced by 1.5 periods or more between two "
+      "frames: "
       "round(advance / period) - 1 refreshes.</td></tr>\n"
       "<tr><td>discarded</td><td class=\"words\">Frames that the runtime answered with XR_FRAME_DISCARDED.</td></tr>\n"
-      "<tr><td>stale run</td><td class=\"words\">Consecutive refreshes without a new frame: missed ones and those of discarded "
+      "<tr><td>stale run</td><td class=\"words\">Consecutive refreshes without a new frame: missed ones and those of "
+      "discarded "
       "frames.</td></tr>\n"
       "<tr><td>not rendered</td><td class=\"words\">Frames whose should_render was false.</td></tr>\n"
       "<tr><td>warm-up</td><td class=\"words\">The first frames, which load and compile: counted, in frames.csv, in no "
       "statistic.</td></tr>\n</table></div>\n";
   html +=
-      "<h2>What is not measured</h2>\n<p>The panel (scan-out, persistence, switching time), the compositor's own work, and "
-      "reprojection, which warps the last frame to a newer pose before it is shown: so neither motion-to-photon latency nor "
-      "what the wearer finally saw. All times are CLOCK_MONOTONIC as the application saw them; other work on the machine is "
+      "<h2>What is not measured</h2>\n<p>The panel (scan-out, persistence, switching time), the compositor's own work, "
+      "and "
+      "reprojection, which warps the last frame to a newer pose before it is shown: so neither motion-to-photon "
+      "latency nor "
+      "what the wearer finally saw. All times are CLOCK_MONOTONIC as the application saw them; other work on the "
+      "machine is "
       "in them.</p>\n";
   return html;
 }
@@ -322,20 +355,23 @@ std::string report_page(std::span<const Run> runs) {
   const std::string title = only ? "Walk report" + (runs[0].info.pack.empty() ? "" : ": " + runs[0].info.pack)
                                  : fmt::format("{} walks side by side", runs.size());
 
-  std::string html = "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-                     "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>" +
-                     html_escaped(title) + "</title>\n<style>" + kReportStyle + "</style>\n</head>\n<body>\n<main>\n<h1>" +
-                     html_escaped(title) + "</h1>\n";
+  std::string html =
+      "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>" +
+      html_escaped(title) + "</title>\n<style>" + kReportStyle + "</style>\n</head>\n<body>\n<main>\n<h1>" +
+      html_escaped(title) + "</h1>\n";
   if (only) {
     const RunInfo& info = runs[0].info;
     html += "<p class=\"soft\">" +
-            html_escaped(fmt::format("{} · {} × {} px, {} views · {} · {}", info.display, info.eye_width, info.eye_height,
-                                     info.views, info.device.name, info.started_utc)) +
+            html_escaped(fmt::format("{} · {} × {} px, {} views · {} · {}", info.display, info.eye_width,
+                                     info.eye_height, info.views, info.device.name, info.started_utc)) +
             "</p>\n";
   } else {
-    html += "<p class=\"soft\">Differences are to the first run. Pictures share their scales. Percentiles of runs are never "
-            "averaged.</p>\n<h2>Comparison</h2>\n" +
-            comparison_table(runs, summaries);
+    html +=
+        "<p class=\"soft\">Differences are to the first run. Pictures share their scales. Percentiles of runs are "
+        "never "
+        "averaged.</p>\n<h2>Comparison</h2>\n" +
+        comparison_table(runs, summaries);
   }
   for (std::size_t i = 0; i < runs.size(); ++i) html += run_section(runs[i], summaries[i], scale, only);
   html += "<h2>Machine, device, runtime, build</h2>\n" + facts_table(runs, summaries);

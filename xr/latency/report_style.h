@@ -1,4 +1,5 @@
-// The page's style sheet: one set of colours for light and one for dark surroundings; everything else derives from them.
+// The page's style sheet: one set of colours for light and one for dark surroundings; everything else derives from
+// them.
 #pragma once
 
 namespace probewalk {

@@ -40,10 +40,11 @@ std::string name_of(const std::filesystem::path& directory) {
 void make_run_folder(const std::filesystem::path& directory) {
   std::error_code error;
   std::filesystem::create_directories(directory, error);
-  if (error) throw BadInput("cannot make the directory " + directory.string() + ": " + error.message() + "; choose another");
+  if (error)
+    throw BadInput("cannot make the directory " + directory.string() + ": " + error.message() + "; choose another");
   if (access(directory.c_str(), W_OK) != 0) {
-    throw BadInput("cannot write to the directory " + directory.string() + ": " + std::generic_category().message(errno) +
-                   "; choose another");
+    throw BadInput("cannot write to the directory " + directory.string() + ": " +
+                   std::generic_category().message(errno) + "; choose another");
   }
 }
 
@@ -61,7 +62,8 @@ Run read_run(const std::filesystem::path& directory) {
   const std::filesystem::path frames_file = directory / "frames.csv";
   SummaryHead head = parse_summary_json(read_text(summary_file, kLargestSummary_bytes), summary_file.string());
   Run run{name_of(directory), std::move(head.info), Ledger(head.options)};
-  for (const FrameRecord& frame : parse_frames_csv(read_text(frames_file, kLargestFrames_bytes), frames_file.string())) {
+  for (const FrameRecord& frame :
+       parse_frames_csv(read_text(frames_file, kLargestFrames_bytes), frames_file.string())) {
     run.ledger.add(frame);
   }
   return run;

@@ -80,5 +80,7 @@ std::string read_build_info();
 std::string utc_now();
 // The arguments as one line that a shell reads back as they were.
 std::string command_line(int argc, const char* const* argv);
+// That of this process; the report shows it, so that a run can be repeated.
+std::string own_command_line();
 
 }  // namespace probewalk

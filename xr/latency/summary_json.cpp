@@ -152,7 +152,8 @@ std::string summary_json(const Ledger& ledger, const RunInfo& info) {
 
 SummaryHead parse_summary_json(std::string_view text, const std::string& file) {
   const Json json = Json::parse(text, nullptr, false);
-  if (!json.is_object()) throw BadInput(file + ": is no JSON object; give a directory that `probewalk walk --report` wrote");
+  if (!json.is_object())
+    throw BadInput(file + ": is no JSON object; give a directory that `probewalk walk --report` wrote");
   int schema = 0;
   take(json, "schema", schema, file);
   if (schema != kSummarySchema) {

@@ -53,8 +53,9 @@ class TraceWriter {
   }
 
   std::string finish(bool device_placed) && {
-    fmt::format_to(out_, "\n],\"otherData\":{{\"clock\":\"CLOCK_MONOTONIC\",\"origin_ns\":{},\"device_passes\":\"{}\"}}}}\n",
-                   origin_ns_, device_placed ? "placed by a calibrated clock" : "left out: device clock not calibrated");
+    fmt::format_to(
+        out_, "\n],\"otherData\":{{\"clock\":\"CLOCK_MONOTONIC\",\"origin_ns\":{},\"device_passes\":\"{}\"}}}}\n",
+        origin_ns_, device_placed ? "placed by a calibrated clock" : "left out: device clock not calibrated");
     return std::move(text_);
   }
 
@@ -66,7 +67,8 @@ class TraceWriter {
   }
   void name(const char* what, unsigned track, const char* name) {
     begin_event();
-    fmt::format_to(out_, R"({{"name":"{}","ph":"M","pid":1,"tid":{},"ts":0,"args":{{"name":"{}"}}}})", what, track, name);
+    fmt::format_to(out_, R"({{"name":"{}","ph":"M","pid":1,"tid":{},"ts":0,"args":{{"name":"{}"}}}})", what, track,
+                   name);
   }
 
   std::int64_t origin_ns_;
@@ -91,9 +93,10 @@ Interval not_before(std::int64_t end_ns, const Interval& interval) {
 void add_load(TraceWriter& trace, const LevelLoad& load) {
   const unsigned track = kFirstLoader + load.thread;
   const std::string key = fmt::format(R"("room":{},"level":{})", quoted(load.room), load.level);
-  trace.span(track, fmt::format("load {} level {}", load.room, load.level), {load.started_ns, load.finished_ns},
-             fmt::format(R"({{{},"queued_ns":{},"bytes_disk":{},"bytes_device":{},"failure":{}}})", key,
-                         load.started_ns - load.requested_ns, load.bytes_disk, load.bytes_device, quoted(load.failure)));
+  trace.span(
+      track, fmt::format("load {} level {}", load.room, load.level), {load.started_ns, load.finished_ns},
+      fmt::format(R"({{{},"queued_ns":{},"bytes_disk":{},"bytes_device":{},"failure":{}}})", key,
+                  load.started_ns - load.requested_ns, load.bytes_disk, load.bytes_device, quoted(load.failure)));
   const std::string args = "{" + key + "}";
   if (load.read_ns != 0) trace.span(track, "read", {load.started_ns, load.read_ns}, args);
   if (load.decoded_ns == 0) return;

@@ -54,8 +54,8 @@ std::size_t largest(const StageTimes& excess, std::size_t from, std::size_t to) 
                                   excess.begin());
 }
 
-// The stage to blame: the tile that grew most; then what grew inside it, or the device where the CPU may only have waited
-// for it (runtimes wait inside any of their calls), when that explains at least half.
+// The stage to blame: the tile that grew most; then what grew inside it, or the device where the CPU may only have
+// waited for it (runtimes wait inside any of their calls), when that explains at least half.
 std::size_t blame(const StageTimes& excess) {
   const std::size_t tile = largest(excess, kBegin, kStreaming);
   const std::size_t inner = largest(excess, kStreaming, kBlocked);

@@ -57,8 +57,8 @@ std::vector<Value> Accessors::read(int accessor, int components, Convert convert
                                description.count, kMaxAccessorElements));
   }
   if (description.bufferView < 0 && description.count > kMaxZeroElements) {
-    throw BadInput(fmt::format("{}: accessor {} has {} elements without data, more than the limit of {}", document_.file,
-                               accessor, description.count, kMaxZeroElements));
+    throw BadInput(fmt::format("{}: accessor {} has {} elements without data, more than the limit of {}",
+                               document_.file, accessor, description.count, kMaxZeroElements));
   }
   const std::uint64_t element = component * static_cast<std::uint64_t>(components);
   const std::uint8_t* source = nullptr;

@@ -1,4 +1,5 @@
-// Typed reading of accessors: every component type, normalised, strided and sparse, checked against the bytes there are.
+// Typed reading of accessors: every component type, normalised, strided and sparse, checked against the bytes there
+// are.
 #pragma once
 
 #include <cstdint>

@@ -58,7 +58,8 @@ bool is_id(const std::string& id) {
 }
 
 // "Living Room" -> "living-room"; numbered when taken. `numbers`: the last one that each id has got.
-std::string unique_id(const std::string& name, const std::set<std::string>& taken, std::map<std::string, int>& numbers) {
+std::string unique_id(const std::string& name, const std::set<std::string>& taken,
+                      std::map<std::string, int>& numbers) {
   std::string id;
   for (const char c : name) {
     if ((c >= 'a' && c <= 'z') || (c >= '0' && c <= '9')) {
@@ -102,7 +103,8 @@ void rooms_from_file(const std::filesystem::path& file, SourceFiles& files, Scen
   }
   const json* rooms = find_array(document, "rooms");
   if (!rooms) throw BadInput(name + ": no list 'rooms'; expected {\"rooms\": [{\"id\", \"name\", \"min\", \"max\"}]}");
-  if (rooms->size() > kMaxRooms) throw BadInput(fmt::format("{}: {} rooms, more than {}", name, rooms->size(), kMaxRooms));
+  if (rooms->size() > kMaxRooms)
+    throw BadInput(fmt::format("{}: {} rooms, more than {}", name, rooms->size(), kMaxRooms));
   std::set<std::string> taken;
   for (std::size_t i = 0; i < rooms->size(); ++i) {
     const json& entry = (*rooms)[i];
@@ -133,7 +135,8 @@ void rooms_from_nodes(const Document& document, const std::vector<NodeInstance>&
     const json* extras = find_object((*list)[static_cast<std::size_t>(instance.node)], "extras");
     std::string name = extras ? string_member(*extras, "probewalk_room") : "";
     if (name.empty()) continue;
-    if (scene.rooms.size() == kMaxRooms) throw BadInput(fmt::format("{}: more than {} rooms", document.file, kMaxRooms));
+    if (scene.rooms.size() == kMaxRooms)
+      throw BadInput(fmt::format("{}: more than {} rooms", document.file, kMaxRooms));
     shorten_text(name, kMaxNameLength);
     const std::string where = fmt::format("{}: room '{}' of node {}", document.file, name, instance.node);
     const std::optional<glm::dvec3> lower = vector_member(where, *extras, "probewalk_room_min");

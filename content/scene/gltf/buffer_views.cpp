@@ -77,7 +77,8 @@ std::span<const std::uint8_t> BufferViews::slice(int view, int buffer, std::uint
                                buffer));
   }
   if (document_.buffer_is_placeholder[buffer]) {
-    throw BadInput(fmt::format("{}: bufferView {} refers to buffer {}, which has no data", document_.file, view, buffer));
+    throw BadInput(
+        fmt::format("{}: bufferView {} refers to buffer {}, which has no data", document_.file, view, buffer));
   }
   const Bytes& bytes = document_.buffers[buffer];
   if (offset > bytes.size() || length > bytes.size() - offset) {

@@ -43,7 +43,8 @@ Container split_glb(const std::string& file, const Bytes& bytes) {
   };
   if (bytes.size() < kHeaderBytes) throw truncated(kHeaderBytes);
   const std::uint32_t version = little_endian32(bytes, 4);
-  if (version != 2) throw BadInput(fmt::format("{}: binary glTF version {}; only version 2 can be read", file, version));
+  if (version != 2)
+    throw BadInput(fmt::format("{}: binary glTF version {}; only version 2 can be read", file, version));
   const std::size_t length = little_endian32(bytes, 8);
   if (length > bytes.size()) throw truncated(length);
 

@@ -110,8 +110,8 @@ class GeometryImporter {
     vertices_read_ += data.vertices.count() * placements.size();
     triangles_read_ += data.corners.size() / 3 * placements.size();
     if (vertices_read_ > kMaxVertices || triangles_read_ > kMaxTriangles) {
-      throw BadInput(fmt::format("{}: more than {} triangles or {} vertices; split or simplify the scene", document_.file,
-                                 kMaxTriangles, kMaxVertices));
+      throw BadInput(fmt::format("{}: more than {} triangles or {} vertices; split or simplify the scene",
+                                 document_.file, kMaxTriangles, kMaxVertices));
     }
     if (data.corners.empty()) return;
     for (const glm::dmat4& placement : placements) {

@@ -227,7 +227,8 @@ float emissive_unit_cd_m2(const tinygltf::Material& material) {
   return within(number(extension->second, "emissiveStrength", 1.0), 0.0, 1e9, 1.0);
 }
 
-Material convert(const Document& document, const tinygltf::Material& source, TextureImporter& textures, UvSources& uvs) {
+Material convert(const Document& document, const tinygltf::Material& source, TextureImporter& textures,
+                 UvSources& uvs) {
   const tinygltf::PbrMetallicRoughness& pbr = source.pbrMetallicRoughness;
   Material material;
   material.name = source.name;

@@ -25,15 +25,17 @@ void check_up_axis(const Scene& scene, std::vector<std::string>& warnings) {
   glm::dvec3 across(0.0);
   for (const glm::uvec3& t : scene.triangles) {
     const glm::dvec3 a(scene.positions_m[t.x]);
-    const glm::dvec3 normal = glm::cross(glm::dvec3(scene.positions_m[t.y]) - a, glm::dvec3(scene.positions_m[t.z]) - a);
+    const glm::dvec3 normal =
+        glm::cross(glm::dvec3(scene.positions_m[t.y]) - a, glm::dvec3(scene.positions_m[t.z]) - a);
     const double area = glm::length(normal);
     if (!std::isfinite(area)) continue;
     for (int k = 0; k < 3; ++k) across[k] += std::abs(normal[k]) > nearly * area ? area : 0.0;
   }
   if (across.y < 0.8 * std::max(across.x, across.z)) {
-    warnings.push_back(fmt::format("{} axis may be up, not y (it has more level surface): floors are looked for along y; "
-                                   "turn the scene in its editor if that is wrong",
-                                   across.x > across.z ? "the x" : "the z"));
+    warnings.push_back(
+        fmt::format("{} axis may be up, not y (it has more level surface): floors are looked for along y; "
+                    "turn the scene in its editor if that is wrong",
+                    across.x > across.z ? "the x" : "the z"));
   }
 }
 
@@ -52,7 +54,8 @@ FloorGraph find_floors(const Scene& scene, double voxel_m, Progress& progress, s
                                      plan.lower_m.x, plan.upper_m.x, plan.lower_m.y, plan.upper_m.y));
     }
     if (plan.cell_m > 2.0 * kWidestCell_m) {
-      warnings.push_back(fmt::format("floors are looked for in columns of {:.2f} m to bound memory: doors are missed", plan.cell_m));
+      warnings.push_back(
+          fmt::format("floors are looked for in columns of {:.2f} m to bound memory: doors are missed", plan.cell_m));
     }
     return graph;
   }
@@ -87,7 +90,8 @@ void fill_floor_map(const FloorGraph& graph, const std::vector<std::int32_t>& ro
   for (std::size_t i = 0; i < graph.places.size(); ++i) {
     if (room[i] < 0) continue;
     const StandingPlace& p = graph.places[i];
-    map.nodes.push_back({p.ix, p.iz, p.floor_m, std::min(kTallestHeadroom_m, p.ceiling_m - p.floor_m), std::uint16_t(room[i])});
+    map.nodes.push_back(
+        {p.ix, p.iz, p.floor_m, std::min(kTallestHeadroom_m, p.ceiling_m - p.floor_m), std::uint16_t(room[i])});
   }
 }
 
@@ -101,9 +105,10 @@ void fill_floorless(const Scene& scene, const RayScene& rays, const SpaceOptions
     air = scene.bounds;
     grow(air, space.start.position_m);
   }
-  space.warnings.push_back(fmt::format("no walkable floor found (level, {:.1f} m free above, 1 m^2): the walk hovers at "
-                                       "{:.2f},{:.2f},{:.2f}; check --scale, or give --start",
-                                       kHeadroom_m, space.start.position_m.x, space.start.position_m.y, space.start.position_m.z));
+  space.warnings.push_back(
+      fmt::format("no walkable floor found (level, {:.1f} m free above, 1 m^2): the walk hovers at "
+                  "{:.2f},{:.2f},{:.2f}; check --scale, or give --start",
+                  kHeadroom_m, space.start.position_m.x, space.start.position_m.y, space.start.position_m.z));
 }
 
 }  // namespace

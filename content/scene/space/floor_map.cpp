@@ -13,10 +13,11 @@ std::int32_t FloorMap::find(glm::dvec3 position_m) const {
   const std::int32_t ix = std::int32_t(cell.x);
   const std::int32_t iz = std::int32_t(cell.y);
   const float highest = float(position_m.y + kStep_m);
-  const auto above = std::upper_bound(nodes.begin(), nodes.end(), std::tuple(iz, ix, highest),
-                                      [](const std::tuple<std::int32_t, std::int32_t, float>& key, const FloorNode& node) {
-                                        return key < std::tuple(node.iz, node.ix, node.floor_m);
-                                      });
+  const auto above =
+      std::upper_bound(nodes.begin(), nodes.end(), std::tuple(iz, ix, highest),
+                       [](const std::tuple<std::int32_t, std::int32_t, float>& key, const FloorNode& node) {
+                         return key < std::tuple(node.iz, node.ix, node.floor_m);
+                       });
   if (above == nodes.begin()) return -1;
   const auto found = above - 1;
   return found->ix == ix && found->iz == iz ? std::int32_t(found - nodes.begin()) : -1;

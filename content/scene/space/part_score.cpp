@@ -87,7 +87,8 @@ class KeptPlaces {
       for (int dx = -reach; dx <= reach; dx += stride) {
         const int x = p.ix + dx;
         const int z = p.iz + dz;
-        if (dx * dx + dz * dz > reach * reach || x < 0 || z < 0 || x >= graph_.columns.x || z >= graph_.columns.y) continue;
+        if (dx * dx + dz * dz > reach * reach || x < 0 || z < 0 || x >= graph_.columns.x || z >= graph_.columns.y)
+          continue;
         for (std::uint32_t j = first_[column(x, z)]; j < first_[column(x, z) + 1]; ++j) {
           if (!kept_[j] || std::abs(graph_.places[j].floor_m - p.floor_m) > float(kRise_m)) continue;
           if (sees(rays, graph_.eye_m(place), graph_.eye_m(std::int32_t(j)))) return true;
@@ -162,7 +163,8 @@ std::vector<std::size_t> choose_parts(const Scene& scene, const RayScene& rays, 
     double least = HUGE_VAL;
     for (const std::size_t id : order) {
       const std::int32_t place = nearest_place(graph, parts[id].places, *start_m);
-      const double rise = std::min(std::abs(start_m->y - graph.foot_m(place).y), std::abs(start_m->y - graph.eye_m(place).y));
+      const double rise =
+          std::min(std::abs(start_m->y - graph.foot_m(place).y), std::abs(start_m->y - graph.eye_m(place).y));
       const glm::dvec3 away = *start_m - graph.foot_m(place);
       const double distance = std::hypot(away.x, rise, away.z);
       if (distance < least) {
@@ -183,7 +185,8 @@ std::vector<std::size_t> choose_parts(const Scene& scene, const RayScene& rays, 
     const bool first = kept.empty();
     const bool authored = !scene.rooms.empty() && share_in_authored_rooms(scene, graph, part) >= 0.5;
     if (!first) {
-      const bool worthy = part.area_m2 >= 3.0 && part.widest_m >= 1.2 && worth_per_m2[id] >= 0.5 * best && part.hit >= 0.6;
+      const bool worthy =
+          part.area_m2 >= 3.0 && part.widest_m >= 1.2 && worth_per_m2[id] >= 0.5 * best && part.hit >= 0.6;
       if (!worthy && !authored) continue;
       const std::vector<std::int32_t> sample = strided(part, 32);
       const auto beside = std::count_if(sample.begin(), sample.end(),

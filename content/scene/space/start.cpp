@@ -41,7 +41,8 @@ double widest_view_rad(const RayScene& rays, glm::dvec3 eye_m) {
 std::int32_t widest_place_of_largest_room(const WalkGround& ground) {
   std::map<std::int32_t, std::size_t> size;
   for (const std::int32_t i : ground.places) ++size[ground.room[i]];
-  const auto largest = std::max_element(size.begin(), size.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
+  const auto largest =
+      std::max_element(size.begin(), size.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
   std::int32_t widest = -1;
   for (const std::int32_t i : ground.places) {
     if (ground.room[i] != largest->first) continue;
@@ -82,7 +83,8 @@ Pose find_start(const RayScene& rays, const WalkGround& ground, const std::optio
   Pose pose;
   pose.position_m = ground.graph.eye_m(place);
   if (start_m) {  // exactly there, where the column under it is the one found
-    const glm::dvec2 off = glm::abs(glm::dvec2(start_m->x, start_m->z) - glm::dvec2(pose.position_m.x, pose.position_m.z));
+    const glm::dvec2 off =
+        glm::abs(glm::dvec2(start_m->x, start_m->z) - glm::dvec2(pose.position_m.x, pose.position_m.z));
     if (std::max(off.x, off.y) <= 0.5 * ground.graph.cell_m) {
       pose.position_m.x = start_m->x;
       pose.position_m.z = start_m->z;

@@ -26,7 +26,8 @@ Pose find_start(const RayScene& rays, const WalkGround& ground, const std::optio
 // 0.25 m, looking along the way and around at the stations. Throws Interrupted.
 std::vector<Pose> find_tour(const WalkGround& ground, const Pose& start, Progress& progress);
 
-// For a scene without floor: the bounds' middle at eye height, moved to where most is free and faces are seen from front.
+// For a scene without floor: the bounds' middle at eye height, moved to where most is free and faces are seen from
+// front.
 Pose find_floorless_start(const Scene& scene, const RayScene& rays);
 
 // A slow turn on the spot.

@@ -39,7 +39,8 @@ std::int32_t climb(const FloorGraph& graph, const WalkPaths& paths, std::int32_t
 }
 
 // Root first, then the widest place of every room, then the place farthest from all stations, until all are near.
-std::vector<Station> find_stations(const WalkGround& ground, const WalkPaths& paths, std::int32_t root, Progress& progress) {
+std::vector<Station> find_stations(const WalkGround& ground, const WalkPaths& paths, std::int32_t root,
+                                   Progress& progress) {
   std::vector<Station> stations;
   std::vector<float> nearest_m(ground.places.size(), HUGE_VALF);
   const auto add = [&](std::int32_t local) {
@@ -211,7 +212,8 @@ std::vector<Pose> find_tour(const WalkGround& ground, const Pose& start, Progres
     while (segment + 2 < way.size() && along_m[segment + 1] <= s) ++segment;
     const WayPoint& a = way[segment];
     const WayPoint& b = way[segment + 1];
-    const double f = std::clamp((s - along_m[segment]) / std::max(1e-9, along_m[segment + 1] - along_m[segment]), 0.0, 1.0);
+    const double f =
+        std::clamp((s - along_m[segment]) / std::max(1e-9, along_m[segment + 1] - along_m[segment]), 0.0, 1.0);
     const WayPoint& nearer = f < 0.5 ? a : b;
     samples[i] = {glm::mix(a.foot_m, b.foot_m, f), std::min(a.headroom_m, b.headroom_m)};
     samples[i].foot_m.y = nearer.foot_m.y;

@@ -61,7 +61,8 @@ WalkTree WalkPaths::from(std::int32_t local_root) const {
   return tree;
 }
 
-std::vector<std::int32_t> straight_walk(const FloorGraph& graph, std::int32_t from, std::int32_t to, float clearance_m) {
+std::vector<std::int32_t> straight_walk(const FloorGraph& graph, std::int32_t from, std::int32_t to,
+                                        float clearance_m) {
   const StandingPlace& a = graph.places[from];
   const StandingPlace& b = graph.places[to];
   const int nx = std::abs(b.ix - a.ix);

@@ -43,6 +43,9 @@ inline pw_uint note_and_read(pw_uvec2 address, int index) {
   using glm::max;                                                                        \
   using glm::min;                                                                        \
   using glm::sqrt;                                                                       \
+  inline float pw_float_from_bits(pw_uint bits) {                                        \
+    return std::bit_cast<float>(bits);                                                   \
+  }                                                                                      \
   inline pw_uint pw_word(pw_uvec2 address, int index) {                                  \
     return test::note_and_read(address, index);                                          \
   }                                                                                      \

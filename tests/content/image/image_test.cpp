@@ -115,7 +115,8 @@ TEST(DisplayTransform, ExposesAndEncodes) {
   const ImageRgb8 image = display_transform({1, 1, {glm::vec3(0.18f * 1.2f)}}, 0.0f);
   const double expected = 255.0 * (1.055 * std::pow(0.14, 1.0 / 2.4) - 0.055);
   for (const std::uint8_t value : image.rgb) EXPECT_NEAR(value, expected, 0.51);
-  EXPECT_EQ(display_transform({1, 1, {glm::vec3(0.18f * 1.2f * 8.0f)}}, 3.0f).rgb, image.rgb) << "a stop is a factor of 2";
+  EXPECT_EQ(display_transform({1, 1, {glm::vec3(0.18f * 1.2f * 8.0f)}}, 3.0f).rgb, image.rgb)
+      << "a stop is a factor of 2";
 }
 
 TEST(DisplayTransform, IsMonotonousAndSurvivesAnyValue) {

@@ -35,8 +35,8 @@ TEST(Candidates, TheFirstChoiceStaysAcrossACellsBorder) {
   int swapped = 0;
   for (int k = 0; k < 2000; ++k) {
     const glm::vec3 border(-0.8, random(1.0, 1.9), random(-1.0, 1.2)), d(random.direction());
-    const auto before = f32::cell_candidates(set.grid(), dials, border - glm::vec3(1e-5f, 0, 0), d);
-    const auto after = f32::cell_candidates(set.grid(), dials, border + glm::vec3(1e-5f, 0, 0), d);
+    const auto before = f32::cell_candidates(set.grid(), dials, default_rules(), border - glm::vec3(1e-5f, 0, 0), d);
+    const auto after = f32::cell_candidates(set.grid(), dials, default_rules(), border + glm::vec3(1e-5f, 0, 0), d);
     ASSERT_EQ(before.count, 8);
     ASSERT_EQ(after.count, 8);
     swapped += before.probe[0] != after.probe[0];

@@ -1,158 +1,23 @@
-// The tracer against brute force in double, by named hard cases; cell by cell against by pyramid; on bits that no baker
-// would write. The table of disagreements is printed, each class explained where it is counted.
+// The tracer on bits that no baker would write, and whole answers, hand-offs included, against the triangles. The hard
+// cases of single walks are in tests/hard_cases.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <functional>
-#include <string>
 #include <vector>
 
 #include "content/bake/bake_probe.h"
-#include "content/probe/brute_force.h"
 #include "content/probe/device_probe.h"
 #include "content/probe/probe_set.h"
 #include "content/probe/tracer_f32.h"
 #include "content/probe/tracer_f64.h"
 #include "content/scene/ray_scene.h"
-#include "support/brute_compare.h"
 #include "support/low_discrepancy.h"
 #include "support/test_scenes.h"
 
 namespace probewalk {
 namespace {
-
-constexpr int kCells = 64;
-
-struct Probe {
-  ProbeGeometry geometry;
-  DeviceProbe device;
-  ProbeRecord record;
-};
-
-Probe make_probe(const RayScene& rays, glm::dvec3 position_m, int n) {
-  Probe probe;
-  probe.geometry = bake_geometry(rays, position_m, n);
-  probe.device = build_device_probe(ProbeMap{probe.geometry, {}});
-  probe.record = record_in_memory(probe.device);
-  return probe;
-}
-
-struct ProbeRay {
-  glm::vec3 x;  // relative to the probe
-  glm::vec3 d;
-};
-
-struct HardCase {
-  std::string name;
-  std::function<ProbeRay(test::Random&)> ray;
-};
-
-glm::vec3 inside(test::Random& random) {
-  return {static_cast<float>(random(-2.5, 2.5)), static_cast<float>(random(-1.2, 1.2)), static_cast<float>(random(-2, 2))};
-}
-
-std::vector<HardCase> hard_cases() {
-  const auto direction = [](test::Random& r) { return glm::vec3(r.direction()); };
-  const auto vertex = [](test::Random& r) {
-    const int i = static_cast<int>(r(0, kCells + 1)), j = static_cast<int>(r(0, kCells + 1));
-    return glm::vec3(octahedral_point(2.0 * i / kCells - 1, 2.0 * j / kCells - 1));
-  };
-  return {
-      {"random", [=](auto& r) { return ProbeRay{inside(r), direction(r)}; }},
-      {"from the centre", [=](auto& r) { return ProbeRay{glm::vec3(0), direction(r)}; }},
-      {"through the centre", [=](auto& r) { const glm::vec3 d = direction(r); return ProbeRay{-d * static_cast<float>(r(0.1, 1)), d}; }},
-      {"1e-6 past the centre", [=](auto& r) { const glm::vec3 d = direction(r); return ProbeRay{-d + 1e-6f * direction(r), d}; }},
-      {"away from the centre", [=](auto& r) { const glm::vec3 d = direction(r); return ProbeRay{d * static_cast<float>(r(0.05, 0.5)), d}; }},
-      {"along an axis", [=](auto& r) { glm::vec3 d(0); d[static_cast<int>(r(0, 3))] = r() < 0.5 ? -1.0f : 1.0f; return ProbeRay{inside(r), d}; }},
-      {"on an octant's plane", [=](auto& r) { glm::vec3 x = inside(r), d = direction(r); const int a = static_cast<int>(r(0, 3)); x[a] = 0; return ProbeRay{x, d}; }},
-      {"within an octant's plane", [=](auto& r) { glm::vec3 x = inside(r), d = direction(r); const int a = static_cast<int>(r(0, 3)); x[a] = 0; d[a] = 0; return ProbeRay{x, glm::normalize(d)}; }},
-      {"along an octant's edge", [=](auto& r) { const int a = static_cast<int>(r(0, 3)); glm::vec3 x(0), d(0); x[a] = static_cast<float>(r(-1, 1)); d[a] = r() < 0.5 ? -1.0f : 1.0f; return ProbeRay{x, d}; }},
-      {"component of 1e-30", [=](auto& r) { glm::vec3 d = direction(r); d[static_cast<int>(r(0, 3))] = 1e-30f; return ProbeRay{inside(r), glm::normalize(d)}; }},
-      {"denormal component", [=](auto& r) { glm::vec3 d = direction(r); d[static_cast<int>(r(0, 3))] = 1e-42f; return ProbeRay{inside(r), glm::normalize(d)}; }},
-      {"aimed at vertices", [=](auto& r) { const glm::vec3 x = inside(r) * 0.3f; return ProbeRay{x, glm::normalize(vertex(r) * 2.0f - x)}; }},
-      {"along cell edges", [=](auto& r) { const glm::vec3 a = vertex(r); return ProbeRay{a * 0.3f, glm::normalize(a * 1.7f - a * 0.3f + 0.2f * direction(r) * static_cast<float>(r() < 0.5))}; }},
-      {"grazing the floor", [=](auto& r) { glm::vec3 x = inside(r), d = direction(r); x.y = -1.2f + static_cast<float>(r(0.0001, 0.001)); d.y = static_cast<float>(r(-1e-4, 1e-4)); return ProbeRay{x, glm::normalize(d)}; }},
-  };
-}
-
-struct Tally {
-  int rays = 0, ties = 0, disagreements = 0;
-  double error_max = 0.0;
-};
-
-template <class Walk>
-Tally compare(const Probe& probe, const BruteForceProbe& brute, const HardCase& hard, int rays, double tie, const Walk& walk) {
-  Tally tally;
-  test::Random random(7);
-  for (int k = 0; k < rays; ++k) {
-    const ProbeRay ray = hard.ray(random);
-    const auto [cls, t] = walk(probe.record, ray);
-    const BruteAnswer expected = brute.trace(glm::dvec3(ray.x), glm::dvec3(ray.d));
-    ++tally.rays;
-    if (test::same_answer(cls, t, expected)) {
-      if (cls != kClassMiss) tally.error_max = std::max(tally.error_max, std::abs(t - expected.t) / std::max(1e-3, expected.t));
-    } else if (test::is_tie(brute, glm::dvec3(ray.x), glm::dvec3(ray.d), 0.0, cls, t, tie)) {
-      ++tally.ties;
-    } else {
-      ++tally.disagreements;
-    }
-  }
-  return tally;
-}
-
-class TracerOnRoom : public ::testing::TestWithParam<bool> {};
-
-TEST_P(TracerOnRoom, AgreesWithBruteForceInEveryHardCase) {
-  const Scene scene = GetParam() ? test::grille_room() : test::furnished_room();
-  const RayScene rays(scene);
-  const Probe probe = make_probe(rays, {0.31, 1.23, 0.47}, kCells);
-  const BruteForceProbe brute(probe.geometry);
-  std::printf("%-26s %7s | %6s %6s %9s | %6s %6s %9s\n", "case", "rays", "f32 !=", "ties", "max err", "f64 !=", "ties", "max err");
-  for (const HardCase& hard : hard_cases()) {
-    const int count = hard.name == "random" ? 10000 : 1000;
-    const Tally single = compare(probe, brute, hard, count, 2e-6, [](const ProbeRecord& p, const ProbeRay& r) {
-      const f32::WalkState s = f32::walk_probe(p, r.x, r.d, 0.0f, kStartLevel);
-      return std::pair<int, double>(s.status, s.t);
-    });
-    const Tally twice = compare(probe, brute, hard, count, 1e-9, [](const ProbeRecord& p, const ProbeRay& r) {
-      const f64::WalkState s = f64::walk_probe(p, glm::dvec3(r.x), glm::dvec3(r.d), 0.0, kStartLevel);
-      return std::pair<int, double>(s.status, s.t);
-    });
-    std::printf("%-26s %7d | %6d %6d %9.2g | %6d %6d %9.2g\n", hard.name.c_str(), count, single.disagreements, single.ties,
-                single.error_max, twice.disagreements, twice.ties, twice.error_max);
-    // Beyond ties none; at grazing incidence 0.1 % (conditioning).
-    const int allowed = hard.name == "grazing the floor" ? count / 1000 : 0;
-    EXPECT_LE(single.disagreements, allowed) << hard.name;
-    EXPECT_LE(twice.disagreements, allowed) << hard.name;
-    EXPECT_LE(single.ties, count / 50) << hard.name;
-  }
-}
-
-TEST_P(TracerOnRoom, SkippingNodesChangesNoBit) {
-  const Scene scene = GetParam() ? test::grille_room() : test::furnished_room();
-  const RayScene rays(scene);
-  const Probe probe = make_probe(rays, {-0.7, 1.4, 0.9}, 128);
-  for (const HardCase& hard : hard_cases()) {
-    test::Random random(11);
-    const int count = hard.name == "random" ? 100000 : 5000;
-    for (int k = 0; k < count; ++k) {
-      const ProbeRay ray = hard.ray(random);
-      const float t_start = k % 3 == 0 ? static_cast<float>(random(0, 2)) : 0.0f;
-      const f32::WalkState flat = f32::walk_probe(probe.record, ray.x, ray.d, t_start, 0);
-      for (int level : {2, kStartLevel, 6}) {
-        const f32::WalkState pyramid = f32::walk_probe(probe.record, ray.x, ray.d, t_start, level);
-        ASSERT_EQ(pyramid.status, flat.status) << hard.name << " ray " << k << " level " << level;
-        ASSERT_EQ(pyramid.t, flat.t) << hard.name << " ray " << k << " level " << level;
-        ASSERT_EQ(pyramid.t_safe, flat.t_safe) << hard.name << " ray " << k << " level " << level;
-      }
-    }
-  }
-}
-
-INSTANTIATE_TEST_SUITE_P(Scenes, TracerOnRoom, ::testing::Values(false, true),
-                         [](const auto& p) { return p.param ? "Grille" : "Furnished"; });
 
 TEST(Tracer, EndsWithFiniteNumbersOnAnyBits) {
   test::Random random(3);
@@ -174,8 +39,8 @@ TEST(Tracer, EndsWithFiniteNumbersOnAnyBits) {
     DeviceProbe device = build_device_probe(map);
     if (round % 2 == 1) {
       // Worse than any map: samples and pyramid of arbitrary bits, NaN and infinity among them.
-      const std::size_t floats = 17 * 17 + (16 * 16 - 4) / 3;
-      for (std::size_t k = 0; k < floats; ++k) device.geometry[k] = static_cast<std::uint32_t>(random(0, 4294967296.0));
+      const int words = f32::pyramid_begin(n) + f32::pyramid_words(4);
+      for (std::size_t k = 0; k < static_cast<std::size_t>(words); ++k) device.geometry[k] = static_cast<std::uint32_t>(random(0, 4294967296.0));
     }
     const ProbeRecord record = record_in_memory(device);
     for (int k = 0; k < 2000; ++k) {

@@ -65,7 +65,8 @@ TEST(GltfLights, RefusesAnUnknownKind) {
 GltfScene room(float unit = 1.0f) {
   const float x = 6 * unit, y = 3 * unit, z = 8 * unit;
   GltfScene small;
-  const int position = small.add_floats({0, 0, 0, x, 0, 0, x, 0, z, 0, 0, z, 0, y, 0, x, y, 0, x, y, z, 0, y, z}, "VEC3");
+  const int position =
+      small.add_floats({0, 0, 0, x, 0, 0, x, 0, z, 0, 0, z, 0, y, 0, x, y, 0, x, y, z, 0, y, z}, "VEC3");
   const int index = small.add_accessor(
       bytes_of<std::uint16_t>({0, 2, 1, 0, 3, 2, 4, 5, 6, 4, 6, 7, 0, 1, 5, 0, 5, 4, 3, 6, 2, 3, 7, 6,
                                0, 4, 7, 0, 7, 3, 1, 6, 5, 1, 2, 6}),

@@ -108,8 +108,8 @@ TEST(GltfDefects, UnknownExtensionsAreNamed) {
   EXPECT_THAT(small.refusal(), AllOf(HasSubstr("small.gltf"), HasSubstr("needs the extension VENDOR_glitter,")));
 }
 
-// One mesh of two million triangles, as scanners write them, loads in a moment. Processor time, as the machine may be busy
-// with other things; the bound leaves room for slow ones and for sanitizers.
+// One mesh of two million triangles, as scanners write them, loads in a moment. Processor time, as the machine may be
+// busy with other things; the bound leaves room for slow ones and for sanitizers.
 TEST(GltfDefects, OneMeshOfTwoMillionTrianglesLoadsInSeconds) {
   constexpr std::uint32_t kSide = 1000;
   std::vector<float> positions;

@@ -33,8 +33,8 @@ Stream encoded(const draco::Mesh& mesh, Method method, int speed = 5) {
   return {buffer.data(), buffer.data() + buffer.size()};
 }
 
-// A level grid of `side` x `side` squares, 1 m each, with normals and texture coordinates in metres. Its attributes have
-// the ids 0 (position), 1 (normal), 2 (texture coordinates).
+// A level grid of `side` x `side` squares, 1 m each, with normals and texture coordinates in metres. Its attributes
+// have the ids 0 (position), 1 (normal), 2 (texture coordinates).
 std::unique_ptr<draco::Mesh> grid(int side) {
   draco::TriangleSoupMeshBuilder builder;
   builder.Start(side * side * 2);

@@ -209,8 +209,8 @@ TEST(GltfGeometry, ShowsOnlyTheDefaultScene) {
 }
 
 // Replaces the floor's views by compressed ones, as gltfpack writes them: a fallback buffer without data.
-void compress(GltfScene& small, int view, const std::vector<std::uint8_t>& packed, std::size_t count, std::size_t stride,
-              const char* mode, const char* filter = "NONE") {
+void compress(GltfScene& small, int view, const std::vector<std::uint8_t>& packed, std::size_t count,
+              std::size_t stride, const char* mode, const char* filter = "NONE") {
   const std::size_t fallback = small.json["buffers"].size();
   small.json["buffers"].push_back(
       {{"byteLength", count * stride}, {"extensions", {{"EXT_meshopt_compression", {{"fallback", true}}}}}});

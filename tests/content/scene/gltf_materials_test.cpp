@@ -66,7 +66,8 @@ TEST(GltfMaterials, ReadsPicturesFromBufferViewsAndFiles) {
 }
 
 TEST(GltfMaterials, AMissingOrDamagedPictureCostsItsColourOnly) {
-  for (const char* uri : {"absent.png", "data:image/png;base64,iVBORw0KGgo=", "data:image/gif;base64,R0lGODlhAQABAA=="}) {
+  for (const char* uri :
+       {"absent.png", "data:image/png;base64,iVBORw0KGgo=", "data:image/gif;base64,R0lGODlhAQABAA=="}) {
     GltfScene small = GltfScene::floor();
     const int texture = small.add_texture(png_row(kRedThenClear));
     small.set_material({{"name", "wall"}, {"pbrMetallicRoughness", {{"baseColorTexture", {{"index", texture}}}}}});

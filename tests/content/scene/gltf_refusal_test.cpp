@@ -45,15 +45,17 @@ TEST(GltfRefusal, NamesTheVersion) {
 TEST(GltfRefusal, ForeignAndMissingFiles) {
   EXPECT_THAT(refusal("no/such/file.glb"), HasSubstr("no/such/file.glb"));
   EXPECT_THAT(refusal(GltfScene::folder()), HasSubstr("regular file"));
-  for (const char* text : {"", "   ", "PNG", "{", "{}", "[]", "{\"asset\":{}}", "{\"asset\":7}", "glTF", "{\"asset\":{\"version\":2}}"}) {
+  for (const char* text :
+       {"", "   ", "PNG", "{", "{}", "[]", "{\"asset\":{}}", "{\"asset\":7}", "glTF", "{\"asset\":{\"version\":2}}"}) {
     EXPECT_THAT(refusal(GltfScene::write("foreign.gltf", text)), HasSubstr("foreign.gltf")) << text;
   }
   EXPECT_THAT(refusal(GltfScene::write("empty.gltf", R"({"asset":{"version":"2.0"}})")), HasSubstr("no triangle"));
 }
 
 TEST(GltfRefusal, UrisThatLeaveTheFolder) {
-  for (const char* uri : {"../secret.bin", "/etc/passwd", "a/../../b.bin", "%2e%2e/secret.bin", "http://example.org/a.bin",
-                          "file:///etc/passwd", "C:\\a.bin", "..", "data:text/plain,abc", "data:;base64,!!"}) {
+  for (const char* uri :
+       {"../secret.bin", "/etc/passwd", "a/../../b.bin", "%2e%2e/secret.bin", "http://example.org/a.bin",
+        "file:///etc/passwd", "C:\\a.bin", "..", "data:text/plain,abc", "data:;base64,!!"}) {
     GltfScene small = GltfScene::floor();
     small.json["buffers"][0]["uri"] = uri;
     EXPECT_THAT(refusal(small.write()), AllOf(HasSubstr("small.gltf"), HasSubstr("URI"))) << uri;
@@ -67,7 +69,8 @@ TEST(GltfRefusal, UrisThatLeaveTheFolder) {
 TEST(GltfRefusal, PicturesOutsideTheFolderAreNotOpenedHoweverTheyAreSpelled) {
   const std::vector<std::uint8_t> png = png_row({255, 255, 255, 255});
   const std::filesystem::path outside = GltfScene::folder().parent_path() / "outside.png";
-  std::ofstream(outside, std::ios::binary).write(reinterpret_cast<const char*>(png.data()), static_cast<std::streamsize>(png.size()));
+  std::ofstream(outside, std::ios::binary)
+      .write(reinterpret_cast<const char*>(png.data()), static_cast<std::streamsize>(png.size()));
   GltfScene::write("beside.png", std::string(png.begin(), png.end()));
   const auto textures = [](const std::string& uri) -> std::size_t {
     GltfScene small = GltfScene::floor();
@@ -82,9 +85,9 @@ TEST(GltfRefusal, PicturesOutsideTheFolderAreNotOpenedHoweverTheyAreSpelled) {
   };
   EXPECT_EQ(textures("beside.png"), 1u);
   EXPECT_EQ(textures("b%65side.png"), 1u);
-  for (const std::string& uri : std::vector<std::string>{"../outside.png", "%2e%2e/outside.png", "%2E%2e%2foutside.png", ".%2e/outside.png",
-                                "%252e%252e/outside.png", outside.string(), "file://" + outside.string(),
-                                "%2f" + outside.string().substr(1)}) {
+  for (const std::string& uri : std::vector<std::string>{
+           "../outside.png", "%2e%2e/outside.png", "%2E%2e%2foutside.png", ".%2e/outside.png", "%252e%252e/outside.png",
+           outside.string(), "file://" + outside.string(), "%2f" + outside.string().substr(1)}) {
     EXPECT_EQ(textures(uri), 0u) << uri;
   }
   std::filesystem::remove(outside);
@@ -111,15 +114,18 @@ TEST(GltfRefusal, DocumentsThatContradictThemselves) {
   };
   const Case cases[] = {
       {"node loop", [](Json& j) { j["nodes"][0]["children"] = {0}; }, "reached twice"},
-      {"longer loop", [](Json& j) {
+      {"longer loop",
+       [](Json& j) {
          j["nodes"][0]["children"] = {1};
          j["nodes"].push_back({{"children", {0}}});
-       }, "reached twice"},
+       },
+       "reached twice"},
       {"missing node", [](Json& j) { j["scenes"][0]["nodes"] = {7}; }, "node 7"},
       {"negative node", [](Json& j) { j["scenes"][0]["nodes"] = {-1}; }, "node -1"},
       {"missing scene", [](Json& j) { j["scene"] = 3; }, "scene 3"},
       {"missing mesh", [](Json& j) { j["nodes"][0]["mesh"] = 5; }, "mesh 5"},
-      {"missing accessor", [](Json& j) { j["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = 99; }, "accessor 99"},
+      {"missing accessor", [](Json& j) { j["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = 99; },
+       "accessor 99"},
       {"missing index accessor", [](Json& j) { j["meshes"][0]["primitives"][0]["indices"] = 99; }, "accessor"},
       {"missing material", [](Json& j) { j["meshes"][0]["primitives"][0]["material"] = 4; }, "material 4"},
       {"unknown mode", [](Json& j) { j["meshes"][0]["primitives"][0]["mode"] = 9; }, "mode 9"},
@@ -129,15 +135,18 @@ TEST(GltfRefusal, DocumentsThatContradictThemselves) {
       {"huge offset", [](Json& j) { j["bufferViews"][0]["byteOffset"] = 18446744073709551615u; }, "small.gltf"},
       {"accessor beyond view", [](Json& j) { j["accessors"][0]["count"] = 5; }, "needs 60 bytes"},
       {"huge count", [](Json& j) { j["accessors"][0]["count"] = 4000000000u; }, "limit"},
-      {"huge empty accessor", [](Json& j) {
+      {"huge empty accessor",
+       [](Json& j) {
          j["accessors"][0].erase("bufferView");
          j["accessors"][0]["count"] = 100000000;
-       }, "limit"},
+       },
+       "limit"},
       {"huge accessor offset", [](Json& j) { j["accessors"][0]["byteOffset"] = 9223372036854775807; }, "small.gltf"},
       {"wrong type", [](Json& j) { j["accessors"][0]["type"] = "VEC2"; }, "accessor 0"},
       {"unknown type", [](Json& j) { j["accessors"][0]["type"] = "VEC9"; }, "small.gltf"},
       {"unknown component", [](Json& j) { j["accessors"][0]["componentType"] = 1; }, "small.gltf"},
-      {"index beyond vertices", [](Json& j) { j["accessors"][0]["count"] = j["accessors"][1]["count"] = 3; }, "vertex 3 of 3"},
+      {"index beyond vertices", [](Json& j) { j["accessors"][0]["count"] = j["accessors"][1]["count"] = 3; },
+       "vertex 3 of 3"},
       {"uv count", [](Json& j) { j["accessors"][1]["count"] = 3; }, "TEXCOORD_0"},
       {"float indices", [](Json& j) { j["meshes"][0]["primitives"][0]["indices"] = 0; }, "accessor 0"},
       {"short buffer", [](Json& j) { j["buffers"][0]["byteLength"] = 1000; }, "announces 1000"},
@@ -147,61 +156,87 @@ TEST(GltfRefusal, DocumentsThatContradictThemselves) {
       {"nodes are strings", [](Json& j) { j["nodes"] = {"a"}; }, "small.gltf"},
       {"wrong matrix", [](Json& j) { j["nodes"][0]["matrix"] = {1, 2, 3}; }, "small.gltf"},
       {"wrong alpha mode", [](Json& j) { j["materials"] = {{{"alphaMode", "HALF"}}}; }, "HALF"},
-      {"missing texture", [](Json& j) {
-         j["materials"] = {{{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 8}}}}}}};
-       }, "texture 8"},
-      {"missing image", [](Json& j) {
+      {"missing texture",
+       [](Json& j) { j["materials"] = {{{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 8}}}}}}}; },
+       "texture 8"},
+      {"missing image",
+       [](Json& j) {
          j["materials"] = {{{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}}};
          j["textures"] = {{{"source", 6}}};
-       }, "image 6"},
-      {"deep nesting", [](Json& j) {
+       },
+       "image 6"},
+      {"deep nesting",
+       [](Json& j) {
          Json deep = 1;
          for (int i = 0; i < 200; ++i) deep = Json::array({deep});
          j["extras"] = deep;
-       }, "nested"},
+       },
+       "nested"},
       {"wrong sky", [](Json& j) { j["scenes"][0]["extras"]["probewalk_sky"] = {{"zenith", {-1, 0, 0}}}; }, "zenith"},
       {"wrong start", [](Json& j) { j["scenes"][0]["extras"]["probewalk_start"] = "here"; }, "probewalk_start"},
-      {"empty room", [](Json& j) {
-         j["nodes"][0]["extras"] = {{"probewalk_room", "A"}, {"probewalk_room_min", {1, 1, 1}}, {"probewalk_room_max", {0, 2, 2}}};
-       }, "box is empty"},
-      {"room moved away", [](Json& j) {
+      {"empty room",
+       [](Json& j) {
+         j["nodes"][0]["extras"] = {
+             {"probewalk_room", "A"}, {"probewalk_room_min", {1, 1, 1}}, {"probewalk_room_max", {0, 2, 2}}};
+       },
+       "box is empty"},
+      {"room moved away",
+       [](Json& j) {
          j["nodes"][0]["scale"] = {1e300, 1e300, 1e300};
-         j["nodes"][0]["extras"] = {{"probewalk_room", "A"}, {"probewalk_room_min", {-1e9, -1, -1}}, {"probewalk_room_max", {1e9, 2, 2}}};
-       }, "out of range"},
-      {"light moved away", [](Json& j) {
+         j["nodes"][0]["extras"] = {
+             {"probewalk_room", "A"}, {"probewalk_room_min", {-1e9, -1, -1}}, {"probewalk_room_max", {1e9, 2, 2}}};
+       },
+       "out of range"},
+      {"light moved away",
+       [](Json& j) {
          j["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "point"}}};
          j["nodes"][0]["extensions"]["KHR_lights_punctual"]["light"] = 0;
          j["nodes"][0]["translation"] = {1e200, 0, 0};
-       }, "no valid position"},
-      {"light brighter than float", [](Json& j) {
+       },
+       "no valid position"},
+      {"light brighter than float",
+       [](Json& j) {
          j["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "point"}, {"color", {1e200, 0, 0}}}};
          j["nodes"][0]["extensions"]["KHR_lights_punctual"]["light"] = 0;
-       }, "no valid position"},
-      {"sparse beyond", [](Json& j) {
+       },
+       "no valid position"},
+      {"sparse beyond",
+       [](Json& j) {
          j["accessors"][0]["sparse"] = {{"count", 3},
                                         {"indices", {{"bufferView", 2}, {"componentType", 5123}}},
                                         {"values", {{"bufferView", 1}}}};
-       }, "small.gltf"},
-      {"meshopt without data", [](Json& j) {
+       },
+       "small.gltf"},
+      {"meshopt without data",
+       [](Json& j) {
          j["bufferViews"][0]["extensions"]["EXT_meshopt_compression"] = {
              {"buffer", 0}, {"byteLength", 48}, {"byteStride", 12}, {"count", 4}, {"mode", "ATTRIBUTES"}};
-       }, "damaged"},
-      {"meshopt mode", [](Json& j) {
+       },
+       "damaged"},
+      {"meshopt mode",
+       [](Json& j) {
          j["bufferViews"][0]["extensions"]["EXT_meshopt_compression"] = {
              {"buffer", 0}, {"byteLength", 48}, {"byteStride", 12}, {"count", 4}, {"mode", "MAGIC"}};
-       }, "MAGIC"},
-      {"meshopt stride", [](Json& j) {
+       },
+       "MAGIC"},
+      {"meshopt stride",
+       [](Json& j) {
          j["bufferViews"][0]["extensions"]["EXT_meshopt_compression"] = {
              {"buffer", 0}, {"byteLength", 48}, {"byteStride", 13}, {"count", 4}, {"mode", "ATTRIBUTES"}};
-       }, "stride 13"},
-      {"meshopt count", [](Json& j) {
+       },
+       "stride 13"},
+      {"meshopt count",
+       [](Json& j) {
          j["bufferViews"][0]["extensions"]["EXT_meshopt_compression"] = {
              {"buffer", 0}, {"byteLength", 48}, {"byteStride", 12}, {"count", 100000000}, {"mode", "ATTRIBUTES"}};
-       }, "announces"},
-      {"meshopt filter", [](Json& j) {
+       },
+       "announces"},
+      {"meshopt filter",
+       [](Json& j) {
          j["bufferViews"][0]["extensions"]["EXT_meshopt_compression"] = {{"buffer", 0}, {"byteLength", 48},
              {"byteStride", 12}, {"count", 4}, {"mode", "ATTRIBUTES"}, {"filter", "QUATERNION"}};
-       }, "QUATERNION"},
+       },
+       "QUATERNION"},
   };
   for (const Case& c : cases) {
     GltfScene small = GltfScene::floor();

@@ -40,8 +40,8 @@ TEST(Gate, FailsWhatItCannotJudge) {
 }
 
 TEST(Gate, RefusesWhatIsNoCondition) {
-  for (const char* text : {"", "p99", "p99=", "p99=11.1", "p99=11.1m", "p42=1ms", "missed=0ms", "speed.p99=1ms", "missed=0,",
-                           "p99=nanms", "p99=1ms;missed=0", "pose_error_mm.p50=1ms"}) {
+  for (const char* text : {"", "p99", "p99=", "p99=11.1", "p99=11.1m", "p42=1ms", "missed=0ms", "speed.p99=1ms",
+                           "missed=0,", "p99=nanms", "p99=1ms;missed=0", "pose_error_mm.p50=1ms"}) {
     EXPECT_THROW(parse_gate(text), BadUsage) << text;
   }
 }

@@ -50,7 +50,8 @@ TEST(Histogram, BucketsCoverEveryValueAndAreNarrow) {
     if (i > 0) {
       ASSERT_LT(buckets[i - 1].high, buckets[i].low);
     }
-    const double nearest = std::min(std::abs(static_cast<double>(buckets[i].low)), std::abs(static_cast<double>(buckets[i].high)));
+    const double nearest =
+        std::min(std::abs(static_cast<double>(buckets[i].low)), std::abs(static_cast<double>(buckets[i].high)));
     EXPECT_LE(static_cast<double>(buckets[i].high - buckets[i].low), nearest / 64.0 + 1e-9);
     const auto inside = std::ranges::count_if(
         values, [&](std::int64_t v) { return v >= buckets[i].low && v <= buckets[i].high; });

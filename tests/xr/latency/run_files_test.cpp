@@ -29,7 +29,8 @@ Ledger eventful_run() {
     FrameRecord f = synthetic_frame(i);
     if (i == 120) {
       f.record.end += 35 * kMs;
-      for (Interval* later : {&f.locate_late, &f.submit, &f.end}) *later = {later->begin + 35 * kMs, later->end + 35 * kMs};
+      for (Interval* later : {&f.locate_late, &f.submit, &f.end})
+        *later = {later->begin + 35 * kMs, later->end + 35 * kMs};
     }
     if (i > 120) delay(f, 40 * kMs);
     f.discarded = i == 200;
@@ -74,7 +75,9 @@ class RunFiles : public testing::Test {
     text << std::ifstream(directory_ / name, std::ios::binary).rdbuf();
     return text.str();
   }
-  void write(const char* name, const std::string& text) const { std::ofstream(directory_ / name, std::ios::binary) << text; }
+  void write(const char* name, const std::string& text) const {
+    std::ofstream(directory_ / name, std::ios::binary) << text;
+  }
 };
 
 TEST_F(RunFiles, SummaryHasEveryKeyOfTheContract) {
@@ -92,8 +95,9 @@ TEST_F(RunFiles, SummaryHasEveryKeyOfTheContract) {
       EXPECT_TRUE(summary["percentiles"][quantity].contains(key)) << quantity << " " << key;
     }
   }
-  for (const char* key : {"bytes", "rooms_loaded", "coarse_frame_fraction", "need_to_resident_p50_ns",
-                          "need_to_resident_p99_ns", "frame_thread_p99_ns", "device_bytes_max", "device_budget_bytes"}) {
+  for (const char* key :
+       {"bytes", "rooms_loaded", "coarse_frame_fraction", "need_to_resident_p50_ns", "need_to_resident_p99_ns",
+        "frame_thread_p99_ns", "device_bytes_max", "device_budget_bytes"}) {
     EXPECT_TRUE(summary["streaming"].contains(key)) << key;
   }
   EXPECT_EQ(summary["frames"], 280);
@@ -209,18 +213,21 @@ TEST_F(RunFiles, TraceShowsEachLoadOnItsThread) {
                      {"attic", 0, 1, "", 10, 40, t, t + 5, t + 5, t + 5, t + 5}};
   const json trace = json::parse(trace_json(eventful_run(), streaming));
   EXPECT_THAT(test::trace_faults(trace), testing::IsEmpty());
-  EXPECT_THAT(test::track_names(trace), testing::ElementsAre("frame thread", "device", "mirror", "loader 1", "loader 2"));
+  EXPECT_THAT(test::track_names(trace),
+              testing::ElementsAre("frame thread", "device", "mirror", "loader 1", "loader 2"));
   std::vector<std::string> hall;
   for (const json& event : trace["traceEvents"]) {
     if (event["ph"] != "X" || event["args"].value("room", "") != "hall") continue;
-    hall.push_back(event["name"].get<std::string>() + " " + std::to_string(std::llround(event["dur"].get<double>() * 1e3)));
+    hall.push_back(event["name"].get<std::string>() + " " +
+                   std::to_string(std::llround(event["dur"].get<double>() * 1e3)));
     if (event["name"] == "load hall level 2") {
       EXPECT_EQ(event["args"]["failure"], "damaged");
       EXPECT_EQ(event["args"]["level"], 2);
       EXPECT_EQ(event["args"]["queued_ns"], 10);
     }
   }
-  EXPECT_THAT(hall, testing::ElementsAre("load hall level 1 9", "read 2", "decompress 3", "upload 4", "load hall level 2 2"));
+  EXPECT_THAT(hall,
+              testing::ElementsAre("load hall level 1 9", "read 2", "decompress 3", "upload 4", "load hall level 2 2"));
   // Loads alone are a trace, too.
   EXPECT_THAT(test::trace_faults(json::parse(trace_json(Ledger{}, streaming))), testing::IsEmpty());
   EXPECT_THAT(test::trace_faults(json::parse(trace_json(Ledger{}))), testing::IsEmpty());
@@ -237,11 +244,14 @@ TEST_F(RunFiles, ADeviceClockSetAnewTearsNoSpans) {
 }
 
 TEST(TraceCheck, FindsWhatIsWrong) {
-  const json name = {{"name", "thread_name"}, {"ph", "M"}, {"pid", 1}, {"tid", 1}, {"ts", 0}, {"args", {{"name", "a"}}}};
+  const json name = {{"name", "thread_name"},  {"ph", "M"}, {"pid", 1}, {"tid", 1}, {"ts", 0},
+                     {"args", {{"name", "a"}}}};
   const auto span = [](double ts, double dur) {
     return json{{"name", "s"}, {"ph", "X"}, {"pid", 1}, {"tid", 1}, {"ts", ts}, {"dur", dur}};
   };
-  const auto faults = [](const std::vector<json>& events) { return test::trace_faults({{"traceEvents", events}}).size(); };
+  const auto faults = [](const std::vector<json>& events) {
+    return test::trace_faults({{"traceEvents", events}}).size();
+  };
   EXPECT_EQ(faults({name, span(0, 10), span(2, 8), span(2, 3), span(10, 1)}), 0u);
   EXPECT_EQ(faults({name, span(0, 10), span(2, 8.001)}), 1u);
   EXPECT_EQ(faults({name, span(0, -1)}), 1u);
@@ -256,16 +266,18 @@ TEST(TraceCheck, FindsWhatIsWrong) {
 TEST_F(RunFiles, ThePageIsWholeAndSaysWhatItMust) {
   write_run(directory_, eventful_run(), some_info());
   const std::string page = read("index.html");
-  for (const char* words : {"Software rasteriser", "llvmpipe (LLVM 19)", "Monado 25.0.0", "budget 10.0 ms", "What is not measured",
-                            "record took", "warm-up frames", "prediction_horizon", "n &lt; 10000", "class=\"missed\"",
-                            "320 × 240 px", "a &lt;b&gt; &amp; c"}) {
+  for (const char* words : {"Software rasteriser", "llvmpipe (LLVM 19)", "Monado 25.0.0", "budget 10.0 ms",
+                            "What is not measured", "record took", "warm-up frames", "prediction_horizon",
+                            "n &lt; 10000", "class=\"missed\"", "320 × 240 px", "a &lt;b&gt; &amp; c"}) {
     EXPECT_THAT(page, HasSubstr(words));
   }
   // Self-contained: nothing is fetched from anywhere.
-  for (const char* words : {"http:", "https:", "<script src", "<link", "@import", "url("}) EXPECT_THAT(page, Not(HasSubstr(words)));
+  for (const char* words : {"http:", "https:", "<script src", "<link", "@import", "url("})
+    EXPECT_THAT(page, Not(HasSubstr(words)));
   EXPECT_THAT(page, Not(HasSubstr("a <b>")));
   for (const auto& entry : std::filesystem::directory_iterator(directory_)) {
-    EXPECT_THAT(entry.path().filename().string(), testing::AnyOf("frames.csv", "summary.json", "trace.json", "index.html"));
+    EXPECT_THAT(entry.path().filename().string(),
+                testing::AnyOf("frames.csv", "summary.json", "trace.json", "index.html"));
   }
 }
 

@@ -1,0 +1,47 @@
+#include "content/stability/agreement.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "content/stability/low_discrepancy.h"
+
+namespace probewalk::stability {
+
+double distance_error(const Answer& answer, const Answer& reference, double scale_m) {
+  return std::abs(answer.t - reference.t) / std::max(kSmallest * scale_m, std::abs(reference.t));
+}
+
+bool same_answer(const Answer& answer, const Answer& reference, double scale_m) {
+  return answer.cls == reference.cls &&
+         (answer.cls == kClassMiss || distance_error(answer, reference, scale_m) < kSameDistance);
+}
+
+bool is_tie(const Reference& reference, glm::dvec3 x, glm::dvec3 d, const Answer& answer, double scale_m, double tie) {
+  constexpr int kBeside = 32;
+  const double speed = glm::length(d);
+  for (int k = 0; k < kBeside; ++k) {
+    const glm::dvec3 moved = x + tie * scale_m * hammersley_direction(k, kBeside);
+    const glm::dvec3 turned = d + tie * speed * hammersley_direction((k * 13) % kBeside, kBeside);
+    if (same_answer(answer, reference(moved, turned), scale_m)) return true;
+  }
+  if (answer.cls == kClassMiss) return false;
+  // From one side of the ray to the other in small steps: does the distance run through the contender's without a jump?
+  for (int k = 0; k < kBeside; ++k) {
+    const glm::dvec3 offset = tie * scale_m * hammersley_direction(k, kBeside);
+    const glm::dvec3 turn = tie * speed * hammersley_direction((k * 13) % kBeside, kBeside);
+    constexpr int kSteps = 16;
+    Answer before = reference(x - offset, d - turn);
+    for (int step = 1; step <= kSteps; ++step) {
+      const double side = 2.0 * step / kSteps - 1.0;
+      const Answer here = reference(x + side * offset, d + side * turn);
+      const bool between = (before.t - answer.t) * (here.t - answer.t) <= 0.0;
+      const bool of_class = before.cls == answer.cls && here.cls == answer.cls;
+      const bool same_surface = glm::length(before.plane - here.plane) <= 1e-3 * glm::length(here.plane);
+      if (of_class && same_surface && between) return true;
+      before = here;
+    }
+  }
+  return false;
+}
+
+}  // namespace probewalk::stability
