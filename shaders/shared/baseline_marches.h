@@ -1,26 +1,26 @@
 // The marches that the octant-affine walk is measured against, each as its source describes it: one ray against one
 // probe's map of radial distances (baseline_layout.h).
 //   march_3d         points at a fixed step along the ray (Donow 2016, 4.2, algorithms 1 to 3)
-//   march_2d         every texel of the octahedral map that the ray crosses (5.6); or the same answers by skipping nodes
-//                    of the pyramid of minima (5.6, 9.1)
-//   march_two_level  texels of a map of minima, 16 times coarser, and where one may hold a hit, its fine texels (McGuire,
-//                    Mara, Nowrouzezahrai, Luebke 2017: Real-time global illumination using precomputed light field probes)
-// Included after tracer_walk.h, whose WalkState, axis_crossing and octant_sign it uses. No include guard:
-// C++ includes it once a type.
+//   march_2d         every texel of the octahedral map that the ray crosses (5.6); or, with the same answers, past whole
+//                    nodes of the pyramid of minima (5.6, 9.1)
+//   march_two_level  texels of a map of minima, 16 times coarser, and where one may hold a hit, its fine texels
+//                    (McGuire, Mara, Nowrouzezahrai, Luebke 2017, Precomputed light field probes)
+// Included after tracer_walk.h, whose WalkState, axis_crossing and octant_sign it uses. No include
+// guard: C++ includes it once a type.
 //
-// A texel is taken for a piece of the sphere of its distance. A line between two texels is a plane through the probe, so
-// the ray crosses it at one t, which is computed from the line's number alone: it is the same whichever nodes were skipped,
-// and nothing needs a clip near the probe. From finite rays the marches form no NaN; each turn moves on by a texel or down
-// a level, and max_steps and farthest_m end what data or dials would not.
+// A texel is taken for a piece of the sphere of its distance. A line between two texels is a plane through the probe,
+// so the ray crosses it at one t, which is computed from the line's number alone: it is the same whichever nodes were
+// skipped, and nothing needs a clip near the probe. From finite rays the marches form no NaN; each turn moves on by a
+// texel or down a level, and max_steps and farthest_m end what data or dials would not.
 
 struct MarchRules {
-  int epsilon_rule;  // kEpsilon...
+  int epsilon_rule;       // kEpsilon...
   bool reject_backfaces;  // a surface whose stored normal faces along the ray is no hit (thesis 7.2)
   bool backward_trace;    // after such a surface the next probe takes up the ray epsilon before it, not at its start
-  real epsilon_m;   // kEpsilonFixed: metres; else the factor k. Already grown for the probes that have failed
-  real step_m;      // march_3d
-  real farthest_m;  // a ray that is free to here is a miss
-  int max_steps;    // of one march; beyond, the rest of the ray is unknown
+  real epsilon_m;         // kEpsilonFixed: metres; else the factor k. Already grown for the probes that have failed
+  real step_m;            // march_3d
+  real farthest_m;        // a ray that is free to here is a miss
+  int max_steps;          // of one march; beyond, the rest of the ray is unknown
 };
 
 // Farthest end that can be squared in single precision.
@@ -28,8 +28,11 @@ struct MarchRules {
 // What a mean texel's diagonal spans at unit distance, times the texels a side: sqrt(8 pi). The thesis's theta is a
 // picture element's angle (figure 7.2); the maps' own is the finest that they can keep.
 #define PW_TEXEL_DIAGONAL real(5.0132565)
-// Level of the coarse map of march_two_level (a factor of 16), and where march_2d first looks.
+// Level of the coarse map of march_two_level: a factor of 16.
 #define PW_COARSE_LEVEL 4
+// march_2d's nodes are at most the map's side over 16, where it first looks: fewest look-ups in rooms, at 128 to 2048
+// texels a side alike, and what makes their number grow with the logarithm of the side.
+#define PW_TOP_BELOW_MAP 4
 
 // Offset of level l >= 1 of the pyramid of minima, in words: the levels before it have n^2/4 + n^2/16 + ...
 PW_FUNCTION int minimum_level_offset(int n, int level) {
@@ -37,8 +40,12 @@ PW_FUNCTION int minimum_level_offset(int n, int level) {
   return (n * n - finer * finer) / 3;
 }
 
-PW_FUNCTION real length_of(real3 v) { return sqrt(v.x * v.x + v.y * v.y + v.z * v.z); }
-PW_FUNCTION real dot_of(real3 a, real3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+PW_FUNCTION real length_of(real3 v) {
+  return sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
+}
+PW_FUNCTION real dot_of(real3 a, real3 b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
 
 // Unit normal from its word: octahedral, two snorm 16, u in the low half.
 PW_FUNCTION real3 stored_normal(BaselineRecord map, int texel, PW_INOUT(pw_uint) lookups) {
@@ -59,8 +66,8 @@ PW_FUNCTION real greatest_thickness(BaselineRecord map, MarchRules rules, real f
   return factor * rules.epsilon_m * (PW_TEXEL_DIAGONAL / real(1 << int(map.n_log2))) * from_origin_m;
 }
 
-// Is the surface at radius r near enough to the ray's point z = x + t d, seen in the same direction at `distance`, to be
-// what the ray meets (thesis 7.1)? y is the surface's point.
+// Is the surface at radius r near enough to the ray's point z = x + t d, seen in the same direction at `distance`, to
+// be what the ray meets (thesis 7.1)? y is the surface's point.
 PW_FUNCTION bool near_enough(BaselineRecord map, MarchRules rules, int texel, real3 x, real3 d, real t, real3 z,
                              real distance, real r, PW_INOUT(pw_uint) lookups) {
   real off = abs(distance - r);
@@ -74,8 +81,8 @@ PW_FUNCTION bool near_enough(BaselineRecord map, MarchRules rules, int texel, re
     if (!(along > real(0)) || (distance > r && along > t)) return false;
     return length_of(to_y - d * along) <= greatest_thickness(map, rules, along);
   }
-  // eps = k tan(theta) d(X, Y) |alpha beta| (1 - beta nu): alpha from the answer to the origin, beta from the probe to the
-  // origin (from the probe itself, the ray's own direction), nu the normal.
+  // eps = k tan(theta) d(X, Y) |alpha beta| (1 - beta nu): alpha from the answer to the origin, beta from the probe to
+  // the origin (from the probe itself, the ray's own direction), nu the normal.
   real from_origin = length_of(to_y);
   real greatest = greatest_thickness(map, rules, from_origin);
   if (off > greatest) return false;
@@ -86,8 +93,8 @@ PW_FUNCTION bool near_enough(BaselineRecord map, MarchRules rules, int texel, re
   return off <= real(0.5) * greatest * alpha_beta * (real(1) - dot_of(beta, normal));
 }
 
-// The ray meets the texel's surface at t: a hit, or by the rules a back face. For the latter the knowledge ends at t, but
-// the right surface lies before it, at most epsilon by 9.1.
+// The ray meets the texel's surface at t: a hit, or by the rules a back face. For the latter the knowledge ends at t,
+// but the right surface lies before it, at most epsilon by 9.1.
 PW_FUNCTION void settle_surface(BaselineRecord map, MarchRules rules, int texel, real3 x, real3 d, real t_start, real t,
                                 real r, PW_INOUT(WalkState) state) {
   real3 z = x + d * t;
@@ -175,8 +182,8 @@ PW_FUNCTION WalkState march_3d(BaselineRecord map, MarchRules rules, real3 x, re
   return state;
 }
 
-// A stretch of the ray inside one octant. U = half_n * (u0 + t u1) / (l0 + t l1) are quadrant-local coordinates in texels,
-// V likewise.
+// A stretch of the ray inside one octant. U = half_n * (u0 + t u1) / (l0 + t l1) are quadrant-local coordinates in
+// texels, V likewise.
 struct TexelSegment {
   real u0, u1, v0, v1, l0, l1;
   int step_x, step_y;  // which way U and V move
@@ -227,8 +234,8 @@ PW_FUNCTION int cell_after_skip(real f0, real f1, real l0, real l1, real half_n,
   return guess;
 }
 
-// The ray's stretch t_in .. t_out inside one texel, where it is distance_in and distance_out from the probe. True when the
-// march ends here.
+// The ray's stretch t_in .. t_out inside one texel, where it is distance_in and distance_out from the probe. True when
+// the march ends here.
 PW_FUNCTION bool meet_texel(BaselineRecord map, MarchRules rules, int texel, real3 x, real3 d, real t_start, real t_in,
                             real t_out, real distance_in, real distance_out, real r, PW_INOUT(WalkState) state) {
   if (distance_in > r) {
@@ -253,8 +260,8 @@ PW_FUNCTION bool meet_texel(BaselineRecord map, MarchRules rules, int texel, rea
   return true;
 }
 
-// One octant's stretch. top: level of the first look and the coarsest there is, 0 = texel by texel; leap: from top straight
-// to the texels and back (two levels), else level by level.
+// One octant's stretch. top: level of the first look and the coarsest there is, 0 = texel by texel; leap: from top
+// straight to the texels and back (two levels), else level by level.
 PW_FUNCTION bool march_segment(BaselineRecord map, MarchRules rules, real3 x, real3 d, real t_start, TexelSegment s,
                                int top, bool leap, PW_INOUT(int) steps, PW_INOUT(WalkState) state) {
   const int n = 1 << int(map.n_log2);
@@ -289,7 +296,7 @@ PW_FUNCTION bool march_segment(BaselineRecord map, MarchRules rules, real3 x, re
     state.lookups += 1u;
     if (level > 0) {
       real minimum = pw_word_real(map.minimum_address, minimum_level_offset(n, level) + at);
-      // The distance is convex along the ray: no texel of the node sees the ray farther away than its ends, but for rounding.
+      // The distance is convex along the ray: but for rounding, it is nowhere in the node greater than at its ends.
       if (!(max(distance_in, distance_out) * real(1.000001) < minimum)) {
         level = leap ? 0 : level - 1;
         continue;
@@ -332,9 +339,12 @@ PW_FUNCTION WalkState march_octants(BaselineRecord map, MarchRules rules, real3 
 
   real3 t_cross, s;
   real t_axis;
-  bool crosses_x = axis_crossing(x.x, d.x, t_axis); t_cross.x = t_axis;
-  bool crosses_y = axis_crossing(x.y, d.y, t_axis); t_cross.y = t_axis;
-  bool crosses_z = axis_crossing(x.z, d.z, t_axis); t_cross.z = t_axis;
+  bool crosses_x = axis_crossing(x.x, d.x, t_axis);
+  t_cross.x = t_axis;
+  bool crosses_y = axis_crossing(x.y, d.y, t_axis);
+  t_cross.y = t_axis;
+  bool crosses_z = axis_crossing(x.z, d.z, t_axis);
+  t_cross.z = t_axis;
   s.x = octant_sign(crosses_x, t_cross.x, t_start, x.x, d.x);
   s.y = octant_sign(crosses_y, t_cross.y, t_start, x.y, d.y);
   s.z = octant_sign(crosses_z, t_cross.z, t_start, x.z, d.z);
@@ -385,9 +395,18 @@ PW_FUNCTION WalkState march_octants(BaselineRecord map, MarchRules rules, real3 
       t_a = t_b;
     }
     crossed = axis;
-    if (axis == 0) { t_cross.x = PW_NEVER; s.x = -s.x; }
-    if (axis == 1) { t_cross.y = PW_NEVER; s.y = -s.y; }
-    if (axis == 2) { t_cross.z = PW_NEVER; s.z = -s.z; }
+    if (axis == 0) {
+      t_cross.x = PW_NEVER;
+      s.x = -s.x;
+    }
+    if (axis == 1) {
+      t_cross.y = PW_NEVER;
+      s.y = -s.y;
+    }
+    if (axis == 2) {
+      t_cross.z = PW_NEVER;
+      s.z = -s.z;
+    }
   }
   state.status = kClassMiss;
   state.t = PW_NEVER;
@@ -395,10 +414,11 @@ PW_FUNCTION WalkState march_octants(BaselineRecord map, MarchRules rules, real3 
   return state;
 }
 
-// Every texel that the ray crosses; hierarchical: nodes that the ray cannot meet anything in are passed as a whole, with
-// the same answer.
-PW_FUNCTION WalkState march_2d(BaselineRecord map, MarchRules rules, real3 x, real3 d, real t_start, bool hierarchical) {
-  int top = hierarchical ? min(PW_COARSE_LEVEL, int(map.n_log2) - 1) : 0;
+// Every texel that the ray crosses; hierarchical: nodes that the ray cannot meet anything in are passed as a whole,
+// with the same answer.
+PW_FUNCTION WalkState march_2d(BaselineRecord map, MarchRules rules, real3 x, real3 d, real t_start,
+                               bool hierarchical) {
+  int top = hierarchical ? min(max(int(map.n_log2) - PW_TOP_BELOW_MAP, 1), int(map.n_log2) - 1) : 0;
   return march_octants(map, rules, x, d, t_start, top, false);
 }
 

@@ -128,7 +128,9 @@ AnalyticMap::AnalyticMap(const AnalyticScene& scene, glm::dvec3 probe, int n_log
     std::vector<float> coarser;
     for (int j = 0; j < side; ++j) {
       for (int i = 0; i < side; ++i) {
-        const auto at = [&](int dx, int dy) { return finer[static_cast<std::size_t>((2 * j + dy) * 2 * side + 2 * i + dx)]; };
+        const auto at = [&](int dx, int dy) {
+          return finer[static_cast<std::size_t>((2 * j + dy) * 2 * side + 2 * i + dx)];
+        };
         coarser.push_back(std::min({at(0, 0), at(1, 0), at(0, 1), at(1, 1)}));
       }
     }

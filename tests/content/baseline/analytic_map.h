@@ -36,7 +36,9 @@ class AnalyticMap {
   int size() const { return 1 << n_log2_; }
   glm::dvec3 probe() const { return probe_; }
   float distance(int texel) const { return distance_[static_cast<std::size_t>(texel)]; }
-  bool is_distance(std::uint64_t address) const { return address == reinterpret_cast<std::uintptr_t>(distance_.data()); }
+  bool is_distance(std::uint64_t address) const {
+    return address == reinterpret_cast<std::uintptr_t>(distance_.data());
+  }
 
  private:
   glm::dvec3 probe_;

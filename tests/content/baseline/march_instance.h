@@ -33,27 +33,33 @@ inline pw_uint note_and_read(pw_uvec2 address, int index) {
 #pragma GCC diagnostic ignored "-Wconversion"  // GLSL has no casts that C++ would not warn about
 #pragma GCC diagnostic ignored "-Wfloat-conversion"
 #pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
-#define PW_MARCH_INSTANCE_COMMON        \
-  using real2 = glm::vec<2, real>;      \
-  using real3 = glm::vec<3, real>;      \
-  using glm::abs;                       \
-  using glm::bitCount;                  \
-  using glm::ceil;                      \
-  using glm::floor;                     \
-  using glm::max;                       \
-  using glm::min;                       \
-  using glm::sqrt;                      \
-  inline float pw_float_from_bits(pw_uint bits) { return std::bit_cast<float>(bits); } \
-  inline pw_uint pw_word(pw_uvec2 address, int index) { return test::note_and_read(address, index); } \
-  inline real pw_word_real(pw_uvec2 address, int index) { \
+#define PW_MARCH_INSTANCE_COMMON                                                         \
+  using real2 = glm::vec<2, real>;                                                       \
+  using real3 = glm::vec<3, real>;                                                       \
+  using glm::abs;                                                                        \
+  using glm::bitCount;                                                                   \
+  using glm::ceil;                                                                       \
+  using glm::floor;                                                                      \
+  using glm::max;                                                                        \
+  using glm::min;                                                                        \
+  using glm::sqrt;                                                                       \
+  inline float pw_float_from_bits(pw_uint bits) {                                        \
+    return std::bit_cast<float>(bits);                                                   \
+  }                                                                                      \
+  inline pw_uint pw_word(pw_uvec2 address, int index) {                                  \
+    return test::note_and_read(address, index);                                          \
+  }                                                                                      \
+  inline real pw_word_real(pw_uvec2 address, int index) {                                \
     return static_cast<real>(std::bit_cast<float>(test::note_and_read(address, index))); \
   }
 
 namespace probewalk::march32 {
 using real = float;
 PW_MARCH_INSTANCE_COMMON
+// clang-format off
 #include "shaders/shared/tracer_walk.h"
 #include "shaders/shared/baseline_marches.h"
+// clang-format on
 }  // namespace probewalk::march32
 
 #undef PW_NEVER
@@ -62,12 +68,15 @@ PW_MARCH_INSTANCE_COMMON
 #undef PW_FARTHEST
 #undef PW_TEXEL_DIAGONAL
 #undef PW_COARSE_LEVEL
+#undef PW_TOP_BELOW_MAP
 
 namespace probewalk::march64 {
 using real = double;
 PW_MARCH_INSTANCE_COMMON
+// clang-format off
 #include "shaders/shared/tracer_walk.h"
 #include "shaders/shared/baseline_marches.h"
+// clang-format on
 }  // namespace probewalk::march64
 
 #pragma GCC diagnostic pop

@@ -1,5 +1,5 @@
-// The marches of the baselines against scenes that are formulas: what they answer, which texels they read, and that they
-// end on anything.
+// The marches of the baselines against scenes that are formulas: what they answer, which texels they read, and that
+// they end on anything.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -71,11 +71,14 @@ Ray room_ray(test::Random& random, glm::dvec3 probe) {
 }
 
 // A texel's corner is seen at most 4.3 / n from its centre.
-double texel_radius_rad(int n) { return 4.3 / n; }
+double texel_radius_rad(int n) {
+  return 4.3 / n;
+}
 
 // Is the answer on the room's surface, within a texel and epsilon, and not behind the first surface by more than these?
 // Before it, it may be by more along the ray: a wall that the ray grazes is thickened by epsilon.
-void expect_on_surface(int n, const Ray& ray, const test::AnalyticHit& truth, glm::dvec3 probe, double t, double epsilon_m) {
+void expect_on_surface(int n, const Ray& ray, const test::AnalyticHit& truth, glm::dvec3 probe, double t,
+                       double epsilon_m) {
   const glm::dvec3 from_probe = glm::dvec3(ray.x) + t * glm::dvec3(ray.d), point = from_probe + probe;
   const glm::dvec3 inside = glm::min(glm::abs(point - kLow), glm::abs(kHigh - point));
   const double texel_m = 1.5 * texel_radius_rad(n) * glm::length(from_probe);
@@ -122,7 +125,8 @@ TEST(March, TheErrorFallsWithTheResolution) {
       const Ray ray = room_ray(random, probe);
       const WalkState state = hierarchical(map.record(), plain_rules(1.0f), ray);
       if (state.status != kClassHit) continue;
-      error_m.push_back(std::abs(static_cast<double>(state.t) - scene(probe + glm::dvec3(ray.x), glm::dvec3(ray.d))->t));
+      error_m.push_back(
+          std::abs(static_cast<double>(state.t) - scene(probe + glm::dvec3(ray.x), glm::dvec3(ray.d))->t));
     }
     std::nth_element(error_m.begin(), error_m.begin() + static_cast<long>(error_m.size() / 2), error_m.end());
     median_m.push_back(error_m[error_m.size() / 2]);
@@ -269,7 +273,8 @@ TEST(March, ReadsExactlyTheTexelsThatTheRayCrosses) {
     test::noted_reads = nullptr;
     std::vector<int> visited;
     for (const test::ReadWord& read : reads) {
-      if (map.is_distance(read.address) && (visited.empty() || visited.back() != read.index)) visited.push_back(read.index);
+      if (map.is_distance(read.address) && (visited.empty() || visited.back() != read.index))
+        visited.push_back(read.index);
     }
     // The ray by small, equal angles as the probe sees it: every texel that a sample falls into, in order.
     const double closest_t = -glm::dot(x, d), passes = glm::length(x + d * closest_t);
@@ -351,7 +356,8 @@ TEST(March, ARayParallelToItsDisplacementTakesOneLookUpAndIsExact) {
   test::Random random(7);
   for (int k = 0; k < 500; ++k) {
     const int texel = static_cast<int>(random(0, 64 * 64));
-    const glm::dvec3 d = glm::normalize(test::map_direction((2 * (texel % 64) + 1) / 64.0 - 1, (2 * (texel / 64) + 1) / 64.0 - 1));
+    const glm::dvec3 d =
+        glm::normalize(test::map_direction((2 * (texel % 64) + 1) / 64.0 - 1, (2 * (texel / 64) + 1) / 64.0 - 1));
     const Ray ray{glm::vec3(d * random(0, 1.2)), glm::vec3(d)};
     const WalkState state = flat(map.record(), plain_rules(), ray);
     ASSERT_EQ(state.status, kClassHit) << k;
@@ -402,8 +408,8 @@ TEST(March, ABackFaceIsNoHitAndTheNextProbeFindsTheFront) {
 }
 
 TEST(March, TheDynamicEpsilonIsTheThesisFormula) {
-  // eps = k tan(theta) d(X, Y) |alpha beta| (1 - beta nu). Where a march gives up, the surface must be farther than that;
-  // a k that makes it just enough must get further.
+  // eps = k tan(theta) d(X, Y) |alpha beta| (1 - beta nu). Where a march gives up, the surface must be farther than
+  // that; a k that makes it just enough must get further.
   const auto scene = test::nearest_of({test::wall(2, 1), test::wall(6, -1)});
   const AnalyticMap map(scene, glm::dvec3(0), 7);
   const double theta = std::sqrt(8 * std::numbers::pi) / map.size();
@@ -424,8 +430,8 @@ TEST(March, TheDynamicEpsilonIsTheThesisFormula) {
     const double r = map.distance(texel), off = glm::length(z) - r;
     const glm::dvec3 y = glm::normalize(z) * r, alpha = glm::normalize(glm::dvec3(ray.x) - y);
     const glm::dvec3 beta = glm::normalize(glm::dvec3(ray.x)), normal(-1, 0, 0);
-    const double epsilon = theta * glm::length(y - glm::dvec3(ray.x)) * std::abs(glm::dot(alpha, beta)) *
-                           (1 - glm::dot(beta, normal));
+    const double epsilon =
+        theta * glm::length(y - glm::dvec3(ray.x)) * std::abs(glm::dot(alpha, beta)) * (1 - glm::dot(beta, normal));
     ASSERT_GT(off, epsilon * (1 - 1e-3)) << k;
     if (epsilon < 1e-3) continue;  // perpendicular: no k makes it a hit
     ++checked;
@@ -499,13 +505,20 @@ TEST(March, EndsAtTheFarthestAndAfterTheMostSteps) {
 // Words that no baker writes.
 float odd_distance(test::Random& random) {
   switch (static_cast<int>(random(0, 12))) {
-    case 0: return 0;
-    case 1: return 1e-40f;
-    case 2: return std::numeric_limits<float>::infinity();
-    case 3: return std::numeric_limits<float>::quiet_NaN();
-    case 4: return -1;
-    case 5: return kBaselineSky_m;
-    default: return static_cast<float>(random(0, 4));
+    case 0:
+      return 0;
+    case 1:
+      return 1e-40f;
+    case 2:
+      return std::numeric_limits<float>::infinity();
+    case 3:
+      return std::numeric_limits<float>::quiet_NaN();
+    case 4:
+      return -1;
+    case 5:
+      return kBaselineSky_m;
+    default:
+      return static_cast<float>(random(0, 4));
   }
 }
 
@@ -529,14 +542,16 @@ TEST(March, EndsAndFormsNoNaNOnAnyRayAndAnyMap) {
   odd_map.normal_address = address(normal.data());
 
   const std::vector<float> odd_numbers{0, -0.0f, 1e-45f, 1e-38f, -1e-30f, 1e-7f, 0.25f, 0.5f, 1, -1, 3, 1e4f, -1e6f};
-  const auto pick = [&] { return odd_numbers[static_cast<std::size_t>(random(0, static_cast<double>(odd_numbers.size())))]; };
+  const auto pick = [&] {
+    return odd_numbers[static_cast<std::size_t>(random(0, static_cast<double>(odd_numbers.size())))];
+  };
   for (int k = 0; k < 60000; ++k) {
     Ray ray{{pick(), pick(), pick()}, glm::vec3(random.direction())};
     if (k % 2 == 0) ray.d = {pick(), pick(), pick()};
     if (k % 7 == 0) ray.d = glm::vec3(k % 3 == 0, k % 3 == 1, k % 3 == 2) * (k % 2 == 0 ? 1.0f : -1.0f);
-    if (k % 11 == 0) ray.x = -ray.d * static_cast<float>(random(0, 3));       // through the probe
-    if (k % 13 == 0) ray.x = ray.d * static_cast<float>(random(0, 3));        // away from it
-    if (k % 17 == 0) ray.d = glm::vec3(1, k % 2 == 0 ? 1 : -1, 0);            // along a seam of the map
+    if (k % 11 == 0) ray.x = -ray.d * static_cast<float>(random(0, 3));  // through the probe
+    if (k % 13 == 0) ray.x = ray.d * static_cast<float>(random(0, 3));   // away from it
+    if (k % 17 == 0) ray.d = glm::vec3(1, k % 2 == 0 ? 1 : -1, 0);       // along a seam of the map
     if (k % 19 == 0) ray.x = glm::vec3(0);
     const double len = glm::length(glm::dvec3(ray.d));
     ray.d = len > 0 ? glm::vec3(glm::dvec3(ray.d) / len) : glm::vec3(0, 0, 1);
@@ -551,7 +566,8 @@ TEST(March, EndsAndFormsNoNaNOnAnyRayAndAnyMap) {
     for (const BaselineRecord& map : {room.record(), odd_map}) {
       for (const NamedMarch& method : marches()) {
         const WalkState state = method.march(map, rules, ray, t_start);
-        ASSERT_TRUE(state.status == kClassHit || state.status == kClassMiss || state.status == kClassUnknown) << method.name;
+        ASSERT_TRUE(state.status == kClassHit || state.status == kClassMiss || state.status == kClassUnknown)
+            << method.name;
         ASSERT_TRUE(std::isfinite(state.t) && std::isfinite(state.t_safe)) << method.name << " ray " << k;
         ASSERT_GE(state.t, t_start) << method.name << " ray " << k;
         ASSERT_GE(state.t_safe, t_start) << method.name << " ray " << k;
