@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <fstream>
 #include <iterator>
 #include <map>
 #include <string>
@@ -45,16 +44,6 @@ VkExtent2D parse_eye_size(const std::string& text) {
                                kMaxEyeSide_px));
   }
   return {width, height};
-}
-
-// The words this process was started with; the report shows them, so that a run can be repeated.
-std::string own_command_line() {
-  std::ifstream file("/proc/self/cmdline", std::ios::binary);
-  std::vector<std::string> words;
-  for (std::string word; std::getline(file, word, '\0');) words.push_back(word);
-  std::vector<const char*> pointers;
-  for (const std::string& word : words) pointers.push_back(word.c_str());
-  return command_line(static_cast<int>(pointers.size()), pointers.data());
 }
 
 void print_ending(const WalkResult& result, const WalkArguments& arguments) {
