@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "render/spirv.h"
+#include "render/tracer_choice.h"
 #include "shaders/shared/edge_list.h"
 
 namespace probewalk {
@@ -41,8 +42,10 @@ EdgeSampler::EdgeSampler(const Device& device, const StorageImageSet& images, co
       options_(options),
       list_(device, list_bytes(options), BufferMemory::kDevice, VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT),
       find_(Pipeline::compute(device, &images, spirv::k_find_edges_comp, {options.interleave})),
-      sample_(Pipeline::compute(device, &images, spirv::k_sample_edges_comp,
-                                {options.aov ? VK_TRUE : VK_FALSE, options.interleave, options.samples})) {}
+      sample_(Pipeline::compute(
+          device, &images,
+          tracing_module(options.choice, spirv::k_sample_edges_comp, spirv::k_sample_edges_baseline_comp),
+          tracing_constants({options.aov ? VK_TRUE : VK_FALSE, options.interleave, options.samples}, options.choice))) {}
 
 void EdgeSampler::record(VkCommandBuffer commands, VkDeviceAddress frame) const {
   constexpr VkPipelineStageFlags2 kCompute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 
+#include "content/baseline/method.h"
 #include "render/buffer.h"
 #include "render/device.h"
 #include "render/pipeline.h"
@@ -16,7 +17,8 @@ struct EdgeSamplerOptions {
   std::uint32_t views = 2;
   bool aov = false;
   std::uint32_t samples = 4;     // rays of a pixel at an edge, the first one's included: 2 or 4
-  std::uint32_t interleave = 1;  // see kInterleave in trace_stereo.comp
+  std::uint32_t interleave = 1;  // see kInterleave in trace_stereo.glsl
+  TracerChoice choice;           // how rays are answered; its maps are named by the FrameConstants
 };
 
 class EdgeSampler {

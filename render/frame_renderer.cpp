@@ -246,7 +246,8 @@ void FrameRenderer::write(std::span<const ViewConstants> views, const FrameSetti
   }
   FrameConstants constants{};
   constants.grid = impl.store.grid(impl.slot_index());
-  constants.trace = settings.trace;
+  constants.trace = with_choice(settings.trace, tracer.setup.choice);
+  constants.baseline_address = baseline_address(tracer.setup);
   constants.size_px = {static_cast<int>(tracer.extent_px.width), static_cast<int>(tracer.extent_px.height)};
   constants.view_count = static_cast<int>(views.size());
   constants.exposure = settings.exposure;

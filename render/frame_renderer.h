@@ -29,7 +29,7 @@ struct FrameRendererOptions {
 
 // What a frame is drawn with, beside what the store holds.
 struct FrameSettings {
-  TraceConstants trace{};   // radiance_scale as the pack says
+  TraceConstants trace{};   // radiance_scale as the pack says; what the tracer's choice says of the dials goes over it
   float exposure = 1.0f;    // cd/m^2 * exposure = 1 is display white before the tone curve (exposure_from_ev)
   float fade = 0.0f;        // 0 = picture, 1 = black
   DepthRange depth;         // of the depth image, if there is one

@@ -108,14 +108,14 @@ Pipeline::Pipeline(Pipeline&& other) noexcept
       pipeline_(std::exchange(other.pipeline_, VK_NULL_HANDLE)) {}
 
 Pipeline Pipeline::compute(const Device& device, const StorageImageSet* images, std::span<const std::uint32_t> spirv,
-                           std::initializer_list<std::uint32_t> constants) {
+                           const std::vector<std::uint32_t>& constants) {
   Pipeline result(device, images, VK_PIPELINE_BIND_POINT_COMPUTE, VK_SHADER_STAGE_COMPUTE_BIT);
   std::vector<VkSpecializationMapEntry> entries;
   for (std::uint32_t id = 0; id < constants.size(); ++id) {
     entries.push_back({id, static_cast<std::uint32_t>(id * sizeof(std::uint32_t)), sizeof(std::uint32_t)});
   }
   const VkSpecializationInfo specialisation{static_cast<std::uint32_t>(entries.size()), entries.data(),
-                                            constants.size() * sizeof(std::uint32_t), constants.begin()};
+                                            constants.size() * sizeof(std::uint32_t), constants.data()};
   const ShaderModule module(device.handle(), spirv);
   VkComputePipelineCreateInfo info{VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO};
   info.stage = module.stage(VK_SHADER_STAGE_COMPUTE_BIT);

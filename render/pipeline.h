@@ -7,6 +7,7 @@
 #include <initializer_list>
 #include <span>
 #include <utility>
+#include <vector>
 
 #include "render/device.h"
 
@@ -41,9 +42,9 @@ struct PushConstants {
 // Owns a pipeline and its layout.
 class Pipeline {
  public:
-  // `constants` are the specialisation constants 0, 1, ...
+  // `constants` are the specialisation constants 0, 1, ...; those that the shader has not got are passed over.
   static Pipeline compute(const Device& device, const StorageImageSet* images, std::span<const std::uint32_t> spirv,
-                          std::initializer_list<std::uint32_t> constants);
+                          const std::vector<std::uint32_t>& constants);
   // A full-screen triangle onto one attachment: of colour, without blending, or of depth, without a test.
   static Pipeline full_screen(const Device& device, const StorageImageSet& images,
                               std::span<const std::uint32_t> vertex_spirv,

@@ -7,9 +7,12 @@
 namespace probewalk::spirv {
 
 extern const std::span<const std::uint32_t> k_trace_stereo_comp;
+extern const std::span<const std::uint32_t> k_trace_stereo_baseline_comp;
 extern const std::span<const std::uint32_t> k_trace_rays_comp;
+extern const std::span<const std::uint32_t> k_trace_rays_baseline_comp;
 extern const std::span<const std::uint32_t> k_find_edges_comp;
 extern const std::span<const std::uint32_t> k_sample_edges_comp;
+extern const std::span<const std::uint32_t> k_sample_edges_baseline_comp;
 extern const std::span<const std::uint32_t> k_resolve_vert;
 extern const std::span<const std::uint32_t> k_resolve_frag;
 extern const std::span<const std::uint32_t> k_depth_frag;

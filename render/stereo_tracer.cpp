@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <numeric>
-#include <thread>
 
 #include "render/one_shot.h"
 #include "render/spirv.h"
@@ -10,13 +9,7 @@
 namespace probewalk {
 namespace {
 
-constexpr std::uint32_t kTile = 8;  // local size of trace_stereo.comp, both ways
-
-// A software device gives each of its threads one contiguous part of a dispatch, one of which holds the costly pixels:
-// rows in turn made cluttered scenes 1.75 times as fast on llvmpipe.
-std::uint32_t choose_interleave(const Device& device) {
-  return device.info().is_software ? std::clamp(std::thread::hardware_concurrency(), 1u, 64u) : 1u;
-}
+constexpr std::uint32_t kTile = 8;  // local size of trace_stereo.glsl, both ways
 
 // Rows of tiles a view, made up so that the interleave divides those of all views.
 std::uint32_t tile_rows(const TracerOptions& options, std::uint32_t interleave) {
@@ -30,6 +23,11 @@ Image make_output(const Device& device, const TracerOptions& options, VkFormat f
                         VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT});
 }
 
+const TracerOptions& checked(const TracerOptions& options) {
+  check_setup(options.setup);
+  return options;
+}
+
 TracerOptions one_texel(TracerOptions options) {
   options.extent_px = {1, 1};
   return options;
@@ -38,17 +36,22 @@ TracerOptions one_texel(TracerOptions options) {
 }  // namespace
 
 StereoTracer::StereoTracer(const Device& device, const TracerOptions& options)
-    : options_(options),
+    : options_(checked(options)),
       interleave_(choose_interleave(device)),
       radiance_(make_output(device, options, VK_FORMAT_R16G16B16A16_SFLOAT)),
       distance_(make_output(device, options, VK_FORMAT_R32_SFLOAT)),
       aov_(make_output(device, options.aov ? options : one_texel(options), VK_FORMAT_R32G32B32A32_UINT)),
       images_(device, VK_SHADER_STAGE_COMPUTE_BIT, {radiance_.view(), distance_.view(), aov_.view()}),
-      pipeline_(Pipeline::compute(device, &images_, spirv::k_trace_stereo_comp,
-                                  {options.aov ? VK_TRUE : VK_FALSE, interleave_})) {
+      pipeline_(Pipeline::compute(device, &images_,
+                                  tracing_module(options.setup.choice, spirv::k_trace_stereo_comp,
+                                                 spirv::k_trace_stereo_baseline_comp),
+                                  tracing_constants({options.aov ? VK_TRUE : VK_FALSE, interleave_},
+                                                    options.setup.choice))) {
   if (options.samples != 1) {
     edges_ = std::make_unique<EdgeSampler>(
-        device, images_, EdgeSamplerOptions{options.extent_px, options.views, options.aov, options.samples, interleave_});
+        device, images_,
+        EdgeSamplerOptions{options.extent_px, options.views, options.aov, options.samples, interleave_,
+                           options.setup.choice});
   }
   // The images stay in the general layout for good.
   run_commands(device, [&](VkCommandBuffer commands) {

@@ -10,6 +10,7 @@
 #include "render/edge_sampler.h"
 #include "render/image.h"
 #include "render/pipeline.h"
+#include "render/tracer_choice.h"
 
 namespace probewalk {
 
@@ -18,6 +19,7 @@ struct TracerOptions {
   std::uint32_t views = 2;  // 1 .. kMaxViews
   bool aov = false;         // also write class, probe and counts
   std::uint32_t samples = 1;  // rays of a pixel at an edge: 1, 2 or 4
+  TracerSetup setup;          // how rays are answered
 };
 
 // Distance of a miss, metres.
@@ -44,7 +46,7 @@ class StereoTracer {
 
  private:
   TracerOptions options_;
-  std::uint32_t interleave_;  // see kInterleave in trace_stereo.comp
+  std::uint32_t interleave_;  // see kInterleave in trace_stereo.glsl
   Image radiance_, distance_, aov_;
   StorageImageSet images_;
   Pipeline pipeline_;

@@ -85,7 +85,7 @@ struct ViewConstants {
 
 PW_CONSTANT int kMaxViews = 4;
 
-// Written just before submit (late pose), read by trace_stereo.comp, resolve.frag and depth.frag.
+// Written just before submit (late pose), read by trace_stereo.glsl, resolve.frag and depth.frag.
 struct FrameConstants {
   GridConstants grid;
   TraceConstants trace;
@@ -97,6 +97,8 @@ struct FrameConstants {
   float near_m;  // planes of the depth written, see view_depth.h
   float far_m;
   ViewConstants view[4];
+  pw_uvec2 baseline_address;  // of BaselineConstants, for trace_stereo_baseline.comp and sample_edges_baseline.comp
+  pw_uvec2 reserved0;
 };
 
 PW_SHARED_END
@@ -104,7 +106,7 @@ PW_SHARED_END
 #ifdef __cplusplus
 namespace probewalk {
 static_assert(sizeof(ProbeRecord) == 64 && sizeof(GridConstants) == 64 && sizeof(ViewConstants) == 96);
-static_assert(sizeof(FrameConstants) == 64 + 16 + 32 + 4 * 96);
+static_assert(sizeof(FrameConstants) == 64 + 16 + 32 + 4 * 96 + 16);
 }  // namespace probewalk
 #endif
 

@@ -27,7 +27,7 @@ struct BatchAnswer {
   pw_uint reserved;
 };
 
-// What trace_rays.comp is given, by address.
+// What trace_rays.comp and trace_rays_baseline.comp are given, by address.
 struct BatchConstants {
   GridConstants grid;
   TraceConstants trace;
@@ -35,7 +35,7 @@ struct BatchConstants {
   pw_uvec2 answers_address;
   pw_uint ray_count;
   float spread_rad;
-  pw_uvec2 reserved;
+  pw_uvec2 baseline_address;  // of BaselineConstants, for trace_rays_baseline.comp
 };
 
 PW_SHARED_END

@@ -1,9 +1,11 @@
 // The shared tracer on the device. The including shader enables GL_EXT_buffer_reference, GL_EXT_buffer_reference_uvec2
 // and GL_EXT_scalar_block_layout. Every float operation of the module is decorated NoContraction when it is built
-// (shaders/CMakeLists.txt), so the arithmetic is the C++ one's.
+// (shaders/CMakeLists.txt), so the arithmetic is the C++ one's. With PW_BASELINES defined the module traces by the methods
+// that the product is measured against.
 #ifndef PROBEWALK_SHADERS_SHARED_TRACER_GLSL_H
 #define PROBEWALK_SHADERS_SHARED_TRACER_GLSL_H
 
+#include "baseline_layout.h"
 #include "probe_layout.h"
 #include "selection_rules.h"
 
@@ -21,8 +23,19 @@ float pw_word_real(uvec2 address, int index) { return uintBitsToFloat(PwWords(ad
 float pw_float_from_bits(uint bits) { return uintBitsToFloat(bits); }
 ProbeRecord pw_probe(GridConstants grid, int index) { return PwProbes(grid.probes_address).v[index]; }
 
+#ifdef PW_BASELINES
+layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer PwBaselines { BaselineRecord v[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer PwBaselineDials { BaselineConstants v; };
+BaselineRecord pw_baseline(BaselineConstants constants, int index) {
+  return PwBaselines(constants.records_address).v[index];
+}
+#endif
+
 #include "tracer.h"
 #include "tracer_radiance.h"
+#ifdef PW_BASELINES
+#include "baseline_radiance.h"
+#endif
 
 // What a pipeline traces with is fixed when it is made (render/tracer_choice.h): pyramid level of the first look, 0 = cell
 // by cell, and the rules of selection. Lower numbers are each shader's own.
@@ -46,5 +59,40 @@ SelectionRules pipeline_rules() {
   rules.last_resort = kRuleLastResort;
   return rules;
 }
+
+// A ray's answer and its radiance as the pipeline traces. baseline_address: of BaselineConstants.
+#ifdef PW_BASELINES
+layout(constant_id = 12) const int kBaselineMethod = kMethodEnvironment;
+layout(constant_id = 13) const int kBaselineEpsilonRule = kEpsilonFixed;
+layout(constant_id = 14) const int kBaselineRejectBackfaces = 0;
+layout(constant_id = 15) const int kBaselineBackwardTrace = 0;
+
+RayAnswer pipeline_trace(uvec2 baseline_address, GridConstants grid, TraceConstants dials, vec3 origin_hi,
+                         vec3 origin_lo, vec3 direction) {
+  BaselineContext context;
+  context.method = kBaselineMethod;
+  context.epsilon_rule = kBaselineEpsilonRule;
+  context.reject_backfaces = kBaselineRejectBackfaces;
+  context.backward_trace = kBaselineBackwardTrace;
+  // An environment map needs no constants, and may be given none.
+  if (kBaselineMethod != kMethodEnvironment) context.constants = PwBaselineDials(baseline_address).v;
+  return trace_ray(context, grid, dials, pipeline_rules(), origin_hi, origin_lo, direction, kPipelineStartLevel);
+}
+
+vec3 pipeline_radiance(GridConstants grid, TraceConstants dials, RayAnswer answer, vec3 origin_hi, vec3 origin_lo,
+                       vec3 direction, float pixel_angle, out uint reads) {
+  return baseline_radiance(kBaselineMethod, grid, dials, answer, origin_hi, origin_lo, direction, pixel_angle, reads);
+}
+#else
+RayAnswer pipeline_trace(uvec2 baseline_address, GridConstants grid, TraceConstants dials, vec3 origin_hi,
+                         vec3 origin_lo, vec3 direction) {
+  return trace_ray(grid, dials, pipeline_rules(), origin_hi, origin_lo, direction, kPipelineStartLevel);
+}
+
+vec3 pipeline_radiance(GridConstants grid, TraceConstants dials, RayAnswer answer, vec3 origin_hi, vec3 origin_lo,
+                       vec3 direction, float pixel_angle, out uint reads) {
+  return ray_radiance(grid, dials, answer, origin_hi, origin_lo, direction, pixel_angle, reads);
+}
+#endif
 
 #endif

@@ -33,8 +33,9 @@ Decorations read(std::span<const std::uint32_t> module) {
 }
 
 TEST(Spirv, EveryFloatOperationIsDecorated) {
-  for (const auto& module : {spirv::k_trace_stereo_comp, spirv::k_trace_rays_comp, spirv::k_resolve_frag,
-                             spirv::k_depth_frag}) {
+  for (const auto& module : {spirv::k_trace_stereo_comp, spirv::k_trace_rays_comp, spirv::k_trace_stereo_baseline_comp,
+                             spirv::k_trace_rays_baseline_comp, spirv::k_sample_edges_baseline_comp,
+                             spirv::k_resolve_frag, spirv::k_depth_frag}) {
     const Decorations decorations = read(module);
     EXPECT_GT(decorations.arithmetic.size(), 20u);
     EXPECT_EQ(decorations.arithmetic, decorations.not_contracted);

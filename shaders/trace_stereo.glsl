@@ -1,0 +1,50 @@
+// The body of trace_stereo.comp and trace_stereo_baseline.comp.
+#include "shared/tracer_glsl.h"
+#include "shared/view_ray.h"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+// Also write class, probe and counts.
+layout(constant_id = 0) const bool kWithAov = false;
+// 1: groups take tiles in order. T > 1: T equal parts of the dispatch take rows of tiles in turn, for software devices
+// that give each of their threads one contiguous part. The number of rows must be a multiple of T.
+layout(constant_id = 1) const int kInterleave = 1;
+
+layout(binding = 0, rgba16f) writeonly uniform image2DArray radiance_image;
+layout(binding = 1, r32f) writeonly uniform image2DArray distance_image;
+layout(binding = 2, rgba32ui) writeonly uniform uimage2DArray aov_image;
+
+layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer Frame { FrameConstants constants; };
+layout(push_constant) uniform Push { uvec2 frame_address; };
+
+// Largest half float; radiance is stored times radiance_scale, so that only a source brighter than any texel meets it.
+const float kHalfMax = 65504.0;
+
+void main() {
+  Frame frame = Frame(frame_address);
+  int rows = int(gl_NumWorkGroups.y), row = int(gl_WorkGroupID.z) * rows + int(gl_WorkGroupID.y);
+  int part = rows * int(gl_NumWorkGroups.z) / kInterleave;
+  row = row % part * kInterleave + row / part;
+  int view_index = row / rows;
+  ivec2 pixel = ivec2(int(gl_WorkGroupID.x), row % rows) * 8 + ivec2(gl_LocalInvocationID.xy);
+  ivec2 size_px = frame.constants.size_px;
+  if (pixel.x >= size_px.x || pixel.y >= size_px.y) return;
+
+  ViewConstants view = frame.constants.view[view_index];
+  GridConstants grid = frame.constants.grid;
+  TraceConstants dials = frame.constants.trace;
+  vec3 direction = view_ray(view, pixel, size_px);
+  RayAnswer answer = pipeline_trace(frame.constants.baseline_address, grid, dials, view.origin_hi_m, view.origin_lo_m,
+                                    direction);
+  uint reads;
+  vec3 radiance = pipeline_radiance(grid, dials, answer, view.origin_hi_m, view.origin_lo_m, direction,
+                                    view.pixel_angle_rad, reads);
+
+  ivec3 texel = ivec3(pixel, view_index);
+  imageStore(radiance_image, texel, vec4(min(radiance * dials.radiance_scale, vec3(kHalfMax)), 1.0));
+  imageStore(distance_image, texel, vec4(answer.t));
+  if (kWithAov) {
+    imageStore(aov_image, texel,
+               uvec4(uint(answer.cls), uint(answer.probe), answer.lookups, answer.tries | 1u << 8 | reads << 16));
+  }
+}
