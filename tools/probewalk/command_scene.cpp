@@ -21,7 +21,7 @@ struct SceneOptions {
 void list_scenes(const CommonOptions& common) {
   nlohmann::ordered_json scenes = nlohmann::ordered_json::array();
   for (const ProceduralSceneInfo& scene : procedural_scenes()) {
-    if (!common.json) std::printf("%-10s %s\n", scene.name.c_str(), scene.description.c_str());
+    if (!common.json) std::printf("%-14s %s\n", scene.name.c_str(), scene.description.c_str());
     scenes.push_back({{"name", scene.name}, {"description", scene.description}});
   }
   if (common.json) std::printf("%s\n", scenes.dump(2).c_str());

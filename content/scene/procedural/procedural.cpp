@@ -13,6 +13,7 @@ struct Entry {
   const char* name;
   const char* description;
   procedural::Model (*make)();
+  bool is_heavy = false;
 };
 
 constexpr Entry kScenes[] = {
@@ -20,15 +21,37 @@ constexpr Entry kScenes[] = {
      procedural::make_house},
     {"box-room", "one plain room with a block and one lamp", procedural::make_box_room},
     {"two-rooms", "two rooms with a doorway, a table on thin legs, a column", procedural::make_two_rooms},
-    {"lattice", "hard case: two grilles of 2 cm bars across a room", procedural::make_lattice},
+    {"lattice", "hard case: two grilles of 2 cm bars, 12 cm apart, across a room", procedural::make_lattice},
     {"grove", "hard case: alpha-tested foliage on open ground", procedural::make_grove},
+    {"foliage", "hard case: a winter garden of 20,000 opaque leaves of 7 cm", procedural::make_foliage},
+    {"holodeck", "a bare room with a deep door, for one probe (thesis, figures 9.2 and 9.3)", procedural::make_holodeck},
+    {"courtyard", "arcades, a gallery, a fountain, tables under trees, for about 30 probes (figure 9.4)",
+     procedural::make_courtyard},
+    {"closed-cells", "six closed cells: the near probe is the only one that helps (figure 4.3)",
+     procedural::make_closed_cells},
+    {"corridor", "a hall and a corridor: the parallel probe is the one that helps (figure 4.4)",
+     procedural::make_corridor},
+    {"star-room", "a five-pointed star: not convex, and yet seen whole by one probe (figure 4.5)",
+     procedural::make_star_room},
+    {"hand-over", "two pillars: some rays need one probe after the other (figure 5.4)", procedural::make_hand_over},
+    {"boxed-lattice", "small boxes around the points of a lattice, where probes would see little (figure 8.2)",
+     procedural::make_boxed_lattice},
+    {"fractal-1", "a Menger sponge of level 1 in a room (thesis, 8.3)", [] { return procedural::make_fractal(1); }},
+    {"fractal-2", "the same of level 2", [] { return procedural::make_fractal(2); }},
+    {"fractal-3", "the same of level 3", [] { return procedural::make_fractal(3); }},
+    {"fractal-4", "the same of level 4", [] { return procedural::make_fractal(4); }, true},
+    {"triangles-1e3", "one room in a thousand triangles", [] { return procedural::make_triangle_room(1'000); }},
+    {"triangles-1e4", "the same room in ten thousand", [] { return procedural::make_triangle_room(10'000); }},
+    {"triangles-1e5", "the same room in a hundred thousand", [] { return procedural::make_triangle_room(100'000); }},
+    {"triangles-1e6", "the same room in a million", [] { return procedural::make_triangle_room(1'000'000); }, true},
+    {"triangles-1e7", "the same room in ten million", [] { return procedural::make_triangle_room(10'000'000); }, true},
 };
 
 }  // namespace
 
 std::vector<ProceduralSceneInfo> procedural_scenes() {
   std::vector<ProceduralSceneInfo> list;
-  for (const Entry& entry : kScenes) list.push_back({entry.name, entry.description});
+  for (const Entry& entry : kScenes) list.push_back({entry.name, entry.description, entry.is_heavy});
   return list;
 }
 

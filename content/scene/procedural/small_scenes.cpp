@@ -1,61 +1,14 @@
 #include "content/scene/procedural/panel.h"
+#include "content/scene/procedural/plain_room.h"
 #include "content/scene/procedural/plants.h"
 #include "content/scene/procedural/scenes.h"
 
 namespace probewalk::procedural {
-namespace {
-
-struct Colours {
-  MaterialId floor, wall, red_wall, green_wall, ceiling, thing, lamp;
-};
-
-MaterialId add_plain(Model& model, const char* name, std::uint32_t color) {
-  ModelMaterial m;
-  m.name = name, m.color = srgb(color);
-  return model.add(m);
-}
-
-Colours add_colours(Model& model) {
-  Colours c{};
-  ModelMaterial floor;
-  floor.name = "floor", floor.texture = model.add(tile_texture("floor tiles", 0xB9A68C, 0x7F7466, 4, 4)),
-  floor.color = glm::vec3(1.0f);
-  c.floor = model.add(floor);
-  c.wall = add_plain(model, "wall", 0xE8E4DA);
-  c.red_wall = add_plain(model, "red wall", 0xB5523C);
-  c.green_wall = add_plain(model, "green wall", 0x6F8F5A);
-  c.ceiling = add_plain(model, "ceiling", 0xF5F3EE);
-  c.thing = add_plain(model, "thing", 0x5E7C93);
-  ModelMaterial lamp;
-  lamp.name = "lamp", lamp.emissive_cd_m2 = glm::vec3(900.0f, 800.0f, 640.0f);
-  c.lamp = model.add(lamp);
-  return c;
-}
-
-// Inner faces of a box, one quad each: the plainest closed room.
-void draw_room(Brush brush, const Colours& c, glm::dvec3 lo, glm::dvec3 hi) {
-  brush.quad(c.floor, {lo.x, lo.y, hi.z}, {hi.x, lo.y, hi.z}, {hi.x, lo.y, lo.z}, {lo.x, lo.y, lo.z});
-  brush.quad(c.ceiling, {lo.x, hi.y, lo.z}, {hi.x, hi.y, lo.z}, {hi.x, hi.y, hi.z}, {lo.x, hi.y, hi.z});
-  brush.quad(c.wall, {lo.x, lo.y, lo.z}, {hi.x, lo.y, lo.z}, {hi.x, hi.y, lo.z}, {lo.x, hi.y, lo.z});
-  brush.quad(c.wall, {hi.x, lo.y, hi.z}, {lo.x, lo.y, hi.z}, {lo.x, hi.y, hi.z}, {hi.x, hi.y, hi.z});
-  brush.quad(c.red_wall, {lo.x, lo.y, hi.z}, {lo.x, lo.y, lo.z}, {lo.x, hi.y, lo.z}, {lo.x, hi.y, hi.z});
-  brush.quad(c.green_wall, {hi.x, lo.y, lo.z}, {hi.x, lo.y, hi.z}, {hi.x, hi.y, hi.z}, {hi.x, hi.y, lo.z});
-}
-
-void add_point_light(Model& model, glm::dvec3 position_m, double candela) {
-  ModelLight light;
-  light.name = "Lamp " + std::to_string(model.lights.size() + 1);
-  light.position_m = position_m, light.color = {1.0f, 0.9f, 0.75f}, light.intensity = candela;
-  model.lights.push_back(light);
-}
-
-}  // namespace
-
 Model make_box_room() {
   Model model;
   model.name = "box-room";
-  const Colours c = add_colours(model);
-  draw_room(Brush(model, "Room"), c, {-2.0, 0, -2.0}, {2.0, 2.6, 2.0});
+  const PlainColours c = add_plain_colours(model);
+  draw_plain_room(Brush(model, "Room"), c, {-2.0, 0, -2.0}, {2.0, 2.6, 2.0});
   Brush(model, "Block").at({-0.7, 0, -0.8}, 25).box(c.thing, {-0.4, 0, -0.4}, {0.4, 0.9, 0.4});
   add_point_light(model, {0.3, 2.3, 0.2}, 250);
   model.rooms.push_back({"Room", {-2.0, 0, -2.0}, {2.0, 2.6, 2.0}});
@@ -67,7 +20,7 @@ Model make_two_rooms() {
   // West room x -5..0, east room x 0.2..5, a doorway 1 m wide in the wall between.
   Model model;
   model.name = "two-rooms";
-  const Colours c = add_colours(model);
+  const PlainColours c = add_plain_colours(model);
   Brush outer(model, "Outer walls");
   outer.box(c.wall, {-5.2, -0.1, -2.2}, {5.2, 2.8, -2.0});
   outer.box(c.wall, {-5.2, -0.1, 2.0}, {5.2, 2.8, 2.2});
@@ -98,8 +51,8 @@ Model make_lattice() {
   // A grille of 2 cm bars, 12 cm apart, across the middle of a room, and a second one behind it, turned.
   Model model;
   model.name = "lattice";
-  const Colours c = add_colours(model);
-  draw_room(Brush(model, "Room"), c, {-3.0, 0, -3.0}, {3.0, 2.8, 3.0});
+  const PlainColours c = add_plain_colours(model);
+  draw_plain_room(Brush(model, "Room"), c, {-3.0, 0, -3.0}, {3.0, 2.8, 3.0});
   constexpr double kBar_m = 0.01;  // half a bar
   Brush grille(model, "Grille");
   for (int i = 0; i <= 30; ++i) {

@@ -1,42 +1,53 @@
 #include "tools/probewalk/bench/probe_contender.h"
 
-#include <tbb/parallel_for.h>
-
-#include <chrono>
-
-#include "content/baseline/host_tracer.h"
+#include "content/probe/device_probe.h"
+#include "render/baseline_store.h"
+#include "render/ray_batch.h"
+#include "render/tracer_choice.h"
 
 namespace probewalk::bench {
 namespace {
 
-class HostContender final : public Contender {
+std::uint64_t radiance_bytes(const ProbeSet& probes) {
+  std::uint64_t bytes = 0;
+  for (const DeviceProbe& probe : probes.probes()) bytes += device_block_bytes(probe.radiance);
+  return bytes;
+}
+
+class ProbeContender final : public Contender {
  public:
-  HostContender(const PackLevel& level, const BaselineMaps* maps, const TraceConstants& dials, const TracerChoice& choice)
-      : level_(level), tracer_(level.probes(), dials, choice, maps) {}
+  ProbeContender(const Device& device, const PackLevel& level, const BaselineMaps* maps, const TraceConstants& dials,
+                 const TracerChoice& choice)
+      : level_(level),
+        choice_(choice),
+        dials_(dials),
+        baselines_(choice.needs_maps() ? std::make_unique<BaselineStore>(device, *maps, choice) : nullptr),
+        batch_(device, {choice, baselines_.get()}) {}
 
   TraceRun trace(const ViewRays& rays) override {
-    TraceRun run;
-    run.answers.resize(rays.rays.size());
-    const auto begin = std::chrono::steady_clock::now();
-    tbb::parallel_for(std::size_t{0}, rays.rays.size(), [&](std::size_t k) {
-      run.answers[k] = tracer_.trace(rays.rays[k].origin_m, rays.rays[k].direction, rays.spread_rad);
-    });
-    run.device_ns = (std::chrono::steady_clock::now() - begin) / std::chrono::nanoseconds(1);
-    return run;
+    TracedRays traced = batch_.trace_timed(level_.store(), dials_, rays.rays, rays.spread_rad);
+    return {std::move(traced.answers), traced.device_ns};
   }
 
-  std::uint64_t bytes_device() const override { return level_.store().device_bytes(); }
+  // The baselines read the probes' radiance, but not their geometry.
+  std::uint64_t bytes_device() const override {
+    if (!choice_.is_baseline()) return level_.store().device_bytes();
+    return radiance_bytes(level_.probes()) + (baselines_ ? baselines_->device_bytes() : 0);
+  }
 
  private:
   const PackLevel& level_;
-  HostTracer tracer_;
+  const TracerChoice choice_;
+  const TraceConstants dials_;
+  std::unique_ptr<BaselineStore> baselines_;
+  RayBatch batch_;
 };
 
 }  // namespace
 
-std::unique_ptr<Contender> make_probe_contender(const Device&, const PackLevel& level, const BaselineMaps* maps,
+std::unique_ptr<Contender> make_probe_contender(const Device& device, const PackLevel& level, const BaselineMaps* maps,
                                                 const TraceConstants& dials, const TracerChoice& choice) {
-  return std::make_unique<HostContender>(level, maps, dials, choice);
+  return std::make_unique<ProbeContender>(device, level, maps, dials, choice);
 }
 
 }  // namespace probewalk::bench

@@ -20,7 +20,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Settings whose data are on the device together: of one level, with maps of one size.
+// Settings that are measured together, beside the yardstick: all of one level. A method with maps is a group of its own,
+// since maps are large.
 struct Group {
   std::size_t level = 0;
   int maps = 0;
@@ -30,7 +31,7 @@ struct Group {
 std::vector<Group> groups_of(const std::vector<Setting>& settings) {
   std::vector<Group> groups;
   for (const Setting& setting : settings) {
-    const auto same = [&](const Group& g) { return g.level == setting.level && g.maps == setting.maps; };
+    const auto same = [&](const Group& g) { return g.level == setting.level && g.maps == 0 && setting.maps == 0; };
     auto at = std::find_if(groups.begin(), groups.end(), same);
     if (at == groups.end()) at = groups.insert(groups.end(), Group{setting.level, setting.maps, {}});
     at->settings.push_back(setting);
@@ -52,6 +53,7 @@ class SceneBench {
   };
 
   SettingsRequest request() const;
+  const BaselineMaps* maps_of(int size);
   void run_group(const Group& group, const PackLevel& level);
   void measure_errors(BenchRow& row, const Setting& setting, const PackLevel& level, const std::vector<BatchAnswer>& answers) const;
   void measure_pictures(BenchRow& row, Contender& contender);
@@ -73,6 +75,7 @@ class SceneBench {
   std::vector<ImageRgb8> reference_;
   std::vector<Measured> measured_;
   std::unique_ptr<PackLevel> finest_;
+  BaselineMaps maps_;  // the size last asked for
   std::set<std::string> pictured_;  // methods whose worst view has been kept
   SceneReport report_;
 };
@@ -164,23 +167,30 @@ void SceneBench::measure_pictures(BenchRow& row, Contender& contender) {
   report_.pictures.push_back(worst);
 }
 
-void SceneBench::run_group(const Group& group, const PackLevel& level) {
-  BaselineMaps maps;
-  if (group.maps > 0) {
-    maps = cached_baseline_maps(truth_->scene(), pack_, group.maps,
-                                options_.cache.empty() ? default_baseline_folder() : options_.cache, progress_);
+// Null for none.
+const BaselineMaps* SceneBench::maps_of(int size) {
+  if (size == 0) return nullptr;
+  if (maps_.n != size) {
+    maps_ = {};  // the old ones make room first
+    maps_ = cached_baseline_maps(truth_->scene(), pack_, size,
+                                 options_.cache.empty() ? default_baseline_folder() : options_.cache, progress_);
   }
+  return &maps_;
+}
+
+void SceneBench::run_group(const Group& group, const PackLevel& level) {
+  const BaselineMaps* maps = maps_of(group.maps);
   // The yardstick runs in every group; in its own it is the first setting anyway.
   const bool own = !group.settings.empty() && group.settings.front().settings == kDefaultSettings;
   std::vector<std::unique_ptr<Contender>> contenders;
   if (!own) contenders.push_back(make_probe_contender(device_, *finest_, nullptr, dials_, choice_of("oat")));
-  const std::string stage = fmt::format("{}: {}{}", report_.name, group.maps > 0 ? "baselines, maps " : "probes, resolution ",
-                                        group.maps > 0 ? group.maps : sizes_[group.level]);
+  const std::string stage = group.maps > 0 ? fmt::format("{}: {}, maps {}", report_.name, group.settings.front().method, group.maps)
+                                           : fmt::format("{}: resolution {}", report_.name, sizes_[group.level]);
   progress_.begin(stage + ", errors", group.settings.size(), "settings");
   const std::size_t first = measured_.size();
   for (const Setting& setting : group.settings) {
     check();
-    contenders.push_back(make_probe_contender(device_, level, group.maps > 0 ? &maps : nullptr, dials_, setting.choice));
+    contenders.push_back(make_probe_contender(device_, level, maps, dials_, setting.choice));
     Contender& contender = *contenders.back();
     Measured measured;
     BenchRow& row = measured.row;

@@ -40,10 +40,6 @@ constexpr Variant kVariants[] = {
     {"oat", [](TracerChoice& c) { c.rules.first = kFirstUnsigned; c.rules.start_test = 0; c.rules.advance = 0; }},
 };
 
-std::string joined(const std::string& size, const std::string& more) {
-  return more == kDefaultSettings ? size : size + ", " + more;
-}
-
 bool asked_for(const SettingsRequest& request, const std::string& method) {
   return std::find(request.methods.begin(), request.methods.end(), method) != request.methods.end();
 }
@@ -73,10 +69,12 @@ std::vector<Setting> settings_for(const SettingsRequest& request) {
       for (std::size_t level = is_product ? 0 : finest; level < (is_product ? finest : finest + 1); ++level) {
         settings.push_back({method, fmt::format("resolution {}", request.level_sizes[level]), choice, level, 0});
       }
-    } else if (request.maps_possible) {
-      for (const int size : request.map_sizes) {
-        settings.push_back({method, joined(fmt::format("maps {}", size), describe(choice)), choice, finest, size});
-      }
+    }
+  }
+  if (!request.maps_possible) return settings;
+  for (const int size : request.map_sizes) {  // outermost: maps of one size are in memory at a time
+    for (const std::string& method : request.methods) {
+      if (needs_maps(method)) settings.push_back({method, fmt::format("maps {}", size), choice_of(method), finest, size});
     }
   }
   return settings;
