@@ -15,10 +15,13 @@
 #include "content/error.h"
 #include "content/pack/pack_io.h"
 #include "render/device.h"
+#include "render/triangle_query.h"
 #include "tools/probewalk/bench/bench_files.h"
 #include "tools/probewalk/bench/equal_error.h"
+#include "tools/probewalk/bench/figures.h"
 #include "tools/probewalk/bench/page_text.h"
 #include "tools/probewalk/bench/scene_bench.h"
+#include "tools/probewalk/bench/triangle_cost.h"
 #include "tools/probewalk/commands.h"
 
 namespace probewalk {
@@ -64,6 +67,9 @@ void check_usage(BenchArguments& arguments) {
     }
   }
   const std::size_t scenes = options.scenes.size();
+  if (options.packs.empty() && !options.figures && !options.triangles) {
+    throw BadUsage("name a pack to measure, or ask for --figures or --triangles, which need none");
+  }
   if (scenes > 1 && scenes != options.packs.size()) {
     throw BadUsage(fmt::format("--scene: {} scenes for {} packs; give one for all, or one a pack in the same order", scenes,
                                options.packs.size()));
@@ -139,6 +145,18 @@ void run_bench(BenchArguments& arguments, const CommonOptions& common) {
     summary.scenes.push_back(bench::bench_scene(device, options, options.packs[k], scene, names[k], *progress));
     bench::write_bench_files(summary);  // after every pack: what is done stays
   }
+  if (options.triangles) {
+    const Device querying(with_ray_query(), {.device = common.device});
+    bench::TriangleCostOptions cost;
+    cost.folder = options.output / "triangles";
+    summary.triangles = bench::measure_triangle_cost(querying, cost, *progress);
+    bench::write_bench_files(summary);
+  }
+  if (options.figures) {
+    bench::write_figures(options.output / "figures", {}, *progress);
+    summary.has_figures = true;
+    bench::write_bench_files(summary);
+  }
   if (common.json) {
     std::fputs(bench::rows_json(bench::rows_of(summary)).c_str(), stdout);
   } else {
@@ -155,7 +173,7 @@ void add_bench_command(CLI::App& app, CommonOptions& common) {
       "DIR gets index.html (plots, tables, the worst views), results.json and results.csv, a row for each method with each\n"
       "of its settings in each scene. --scene names what the pack was baked from: without it there is nothing to measure\n"
       "errors against, and the methods that need maps of the scene (all but oat, oat-flat and environment) are left out.\n"
-      "Those maps are kept in --cache from one run to the next.\n\n"
+      "Those maps are kept in --cache from one run to the next. With --triangles and --figures alone no pack is needed.\n\n"
       "Times are the device's own, of all methods side by side in one run: compare rows of one run, not of two. The product\n"
       "with its defaults is the row whose settings are `default`. Errors are kept apart: the tracer's (against the same\n"
       "probes in double precision), the data's (against the triangles), the picture's (FLIP and PSNR).\n\n"
@@ -164,7 +182,7 @@ void add_bench_command(CLI::App& app, CommonOptions& common) {
       "  probewalk bench a.probes b.probes -o bench --scene a.glb --scene b.glb --json > rows.json");
   auto arguments = std::make_shared<BenchArguments>();
   BenchOptions& options = arguments->options;
-  command->add_option("PACK", options.packs, "The packs (folders NAME.probes)")->required();
+  command->add_option("PACK", options.packs, "The packs (folders NAME.probes)");
   command->add_option("-o,--output", options.output, "Directory for the page and the results")->required();
   command->add_option("--scene", options.scenes, "What the packs were baked from: one for all, or one a pack in the same order")
       ->take_all()->allow_extra_args(false);
@@ -183,6 +201,10 @@ void add_bench_command(CLI::App& app, CommonOptions& common) {
       ->check(CLI::Range(1.0, 200.0))->capture_default_str();
   command->add_flag("--no-pictures", arguments->no_pictures, "Leave pictures, FLIP and PSNR out: saves building the scene's light");
   command->add_flag("--no-variants", arguments->no_variants, "Leave oat's other settings and the accelerations out");
+  command->add_flag("--triangles", options.triangles,
+                    "Also the same room in 1e3, 1e5 and 1e6 triangles: oat beside Embree and the device's ray query");
+  command->add_flag("--figures", options.figures,
+                    "Also the figures: regions of probe ordering, and look-ups against the thesis's predictions");
   command->add_option("--repeats", options.repeats, "Timed repetitions after the warm-up")->check(CLI::Range(1, 1000))->capture_default_str();
   add_common_options(*command, common);
   command->callback([arguments, &common] { run_bench(*arguments, common); });

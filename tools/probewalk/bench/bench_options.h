@@ -22,6 +22,8 @@ struct BenchOptions {
   double pixels_per_degree = 20.0;       // of the pictures, as a headset shows them
   bool pictures = true;
   bool variants = true;                  // the product's other settings, and each acceleration alone
+  bool figures = false;                  // of chapters 6 and 9 of the thesis
+  bool triangles = false;                // cost against the number of triangles
   int repeats = 7;                       // timed, after a warm-up
   int threads = 0;
   std::string device;

@@ -6,6 +6,7 @@
 
 #include "tools/probewalk/bench/bench_options.h"
 #include "tools/probewalk/bench/scene_report.h"
+#include "tools/probewalk/bench/triangle_cost.h"
 #include "xr/latency/run_info.h"
 
 namespace probewalk::bench {
@@ -16,7 +17,8 @@ struct BenchSummary {
   DeviceFacts device;
   std::string build, started_utc;
   std::vector<SceneReport> scenes;
-  std::vector<std::string> figures;  // files relative to the page, with --figures
+  bool has_figures = false;                // figures/index.html is there
+  std::vector<TriangleCostRow> triangles;  // empty unless asked for
 };
 
 }  // namespace probewalk::bench

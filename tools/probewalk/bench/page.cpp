@@ -227,12 +227,27 @@ std::string machine_table(const BenchSummary& summary) {
 }
 
 std::string figures_section(const BenchSummary& summary) {
-  if (summary.figures.empty()) return {};
-  std::string html = "<h2>Figures</h2>\n";
-  for (const std::string& file : summary.figures) {
-    add(html, "<p><a href=\"{0}\">{0}</a></p>\n", html_escaped(file));
+  if (!summary.has_figures) return {};
+  return "<h2>Figures</h2>\n<p><a href=\"figures/index.html\">The regions of probe ordering, and look-ups against what the thesis "
+         "predicts</a>.</p>\n";
+}
+
+std::string triangles_section(const BenchSummary& summary) {
+  if (summary.triangles.empty()) return {};
+  std::string html =
+      "<h2>Cost against triangles</h2>\n<p>The same room in more and more triangles, the same rays for all. The ratio is to the same "
+      "contender's time in the first room, repetition by repetition: 1 means that triangles cost nothing. Only oat finds radiance, too. "
+      "Embree runs on the CPU; where the device is the CPU, it is faster than tracing probes, and nothing here claims otherwise.</p>\n"
+      "<div class=\"scroll\"><table><tr><th>room</th><th>triangles</th><th class=\"words\">contender</th><th>ns a ray</th><th>time / first "
+      "room</th><th>processor time / first room</th><th>look-ups</th><th>agrees with Embree</th><th>set-up s</th></tr>\n";
+  for (const TriangleCostRow& row : summary.triangles) {
+    add(html, "<tr{}><td>{}</td><td>{}</td><td class=\"words\">{}</td><td>{:.1f} ± {:.1f}</td><td>{:.2f}</td><td>{:.2f}</td><td>{}</td>"
+              "<td>{}</td><td>{:.1f}</td></tr>\n",
+        row.contender == "oat" ? " class=\"own\"" : "", html_escaped(row.room), row.triangles, row.contender, row.ns_per_ray_median,
+        row.ns_per_ray_spread / 2.0, row.ratio_to_smallest, row.cpu_ratio_to_smallest,
+        row.lookups_mean > 0.0 ? fmt::format("{:.1f}", row.lookups_mean) : "–", share_text(row.agreement_fraction), row.setup_s);
   }
-  return html;
+  return html + "</table></div>\n<p class=\"soft\">Also in <a href=\"triangles.json\">triangles.json</a>.</p>\n";
 }
 
 }  // namespace
@@ -253,10 +268,10 @@ std::string bench_page(const BenchSummary& summary) {
     for (const SceneReport& scene : summary.scenes) add(html, "<a href=\"#{}\">{}</a>", anchor(scene.name), html_escaped(scene.name));
     html += "</p></nav>\n";
   }
-  html += "<h2>What was to be reached</h2>\n" + goals_table(summary.scenes);
+  if (!summary.scenes.empty()) html += "<h2>What was to be reached</h2>\n" + goals_table(summary.scenes);
   for (const SceneReport& scene : summary.scenes) html += scene_section(scene);
-  html += figures_section(summary) + kDefinitions + machine_table(summary);
-  html += "<p>Raw data beside this page: <a href=\"results.json\">results.json</a>, <a href=\"results.csv\">results.csv</a>.</p>\n";
+  html += triangles_section(summary) + figures_section(summary) + kDefinitions + machine_table(summary);
+  if (!summary.scenes.empty()) html += "<p>Raw data beside this page: <a href=\"results.json\">results.json</a>, <a href=\"results.csv\">results.csv</a>.</p>\n";
   return html + "</main>\n</body>\n</html>\n";
 }
 

@@ -115,6 +115,12 @@ std::string scene_in_words(const SceneReport& report) {
                         share_text(best->error), best->speed_ratio, best->march,
                         best->reached ? "" : ", which gets no better than that with its largest maps");
   }
+  for (std::size_t k = 0; k < report.triangles_times.size(); ++k) {
+    const TrianglesTime& t = report.triangles_times[k];
+    text += fmt::format("{} {}: {:.0f} ns, {:.2f} of oat's time", k == 0 ? " Embree on the triangles themselves, on the CPU," : ";", t.name,
+                        t.ns_per_ray_median, t.time_ratio);
+  }
+  if (!report.triangles_times.empty()) text += ".";
   return text;
 }
 

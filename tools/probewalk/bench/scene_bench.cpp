@@ -9,6 +9,7 @@
 
 #include "content/baseline/baseline_cache.h"
 #include "content/error.h"
+#include "content/scene/embree_query.h"
 #include "tools/probewalk/bench/ground_truth.h"
 #include "tools/probewalk/bench/pack_levels.h"
 #include "tools/probewalk/bench/probe_contender.h"
@@ -58,6 +59,7 @@ class SceneBench {
   void measure_errors(BenchRow& row, const Setting& setting, const PackLevel& level, const std::vector<BatchAnswer>& answers) const;
   void measure_pictures(BenchRow& row, Contender& contender);
   void tell_accelerations();
+  void time_triangles();
   void check() const {
     if (progress_.cancelled()) throw Interrupted("interrupted; of this pack nothing was written");
   }
@@ -250,6 +252,30 @@ void SceneBench::tell_accelerations() {
   }
 }
 
+void SceneBench::time_triangles() {
+  const EmbreeQuery embree(truth_->scene());
+  std::vector<TriangleRay> rays;
+  for (const WorldRay& ray : rays_.rays) rays.push_back({glm::vec3(ray.origin_m), 0.0f, device_direction(ray), 0.0f});
+  std::vector<float> t_m(rays.size());
+  const auto product = make_probe_contender(device_, *finest_, nullptr, dials_, choice_of("oat"));
+  const std::pair<const char*, RayWidth> ways[] = {{"one ray at a time", RayWidth::kOne}, {"sixteen at a time", RayWidth::kSixteen}};
+  std::vector<double> ns[2], ratio[2];
+  progress_.begin(report_.name + ": the triangles themselves, times", static_cast<std::uint64_t>(options_.repeats) + 1, "rounds");
+  const double n = static_cast<double>(rays.size());
+  for (int repeat = -1; repeat < options_.repeats; ++repeat) {  // the first warms up
+    check();
+    const double own_ns = static_cast<double>(product->trace(rays_).device_ns) / n;
+    for (int k = 0; k < 2; ++k) {
+      const double took_ns = static_cast<double>(embree.trace(ways[k].second, rays, t_m)) / n;
+      if (repeat < 0) continue;
+      ns[k].push_back(took_ns);
+      ratio[k].push_back(took_ns / std::max(own_ns, 1e-9));
+    }
+    progress_.advance(1);
+  }
+  for (int k = 0; k < 2; ++k) report_.triangles_times.push_back({ways[k].first, median(ns[k]), spread(ns[k]), median(ratio[k])});
+}
+
 SceneReport SceneBench::run() {
   for (const Group& group : groups_of(settings_for(request()))) {
     check();
@@ -261,6 +287,7 @@ SceneReport SceneBench::run() {
     }
   }
   tell_accelerations();
+  if (truth_) time_triangles();
   for (const Measured& measured : measured_) report_.rows.push_back(measured.row);
   return std::move(report_);
 }

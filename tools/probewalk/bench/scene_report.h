@@ -25,6 +25,13 @@ struct WorstPicture {
   std::string reference, shown, difference;  // relative to the page
 };
 
+// Embree on the triangles themselves, with all of the CPU's threads: the same rays, distances only.
+struct TrianglesTime {
+  std::string name;
+  double ns_per_ray_median = 0.0, ns_per_ray_spread = 0.0;
+  double time_ratio = 0.0;  // to the product's defaults, repetition by repetition
+};
+
 struct SceneReport {
   std::string name;        // of the pack's folder; `scene` of its rows
   std::string pack, scene; // as given; the scene may be empty
@@ -36,6 +43,7 @@ struct SceneReport {
   std::vector<BenchRow> rows;
   std::vector<AccelerationResult> accelerations;
   std::vector<WorstPicture> pictures;
+  std::vector<TrianglesTime> triangles_times;
   std::vector<std::string> missing;  // what was not measured, and why
 
   const BenchRow* default_row() const {
