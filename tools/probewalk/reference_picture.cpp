@@ -9,20 +9,6 @@
 namespace probewalk {
 namespace {
 
-Scene load_as_baked(const std::filesystem::path& file, const Manifest& manifest, std::optional<double> scale,
-                    Progress& progress) {
-  SceneLoadOptions options;
-  options.scale = scale.value_or(manifest.scale);
-  options.recentre = manifest.light && manifest.light->recentred;
-  Scene scene = load_scene(file, options);
-  if (scene.content_hash != manifest.scene_hash) {
-    progress.note(fmt::format("{} is not the scene that the pack was baked from, or was loaded otherwise: the pictures "
-                              "may differ for that reason", file.string()));
-  }
-  if (!manifest.light) progress.note("the pack does not say how its light was sampled: the bake's defaults are taken");
-  return scene;
-}
-
 LightOptions light_as_baked(const Manifest& manifest, int threads) {
   LightOptions options;
   options.threads = threads;
@@ -36,10 +22,24 @@ LightOptions light_as_baked(const Manifest& manifest, int threads) {
 
 }  // namespace
 
+Scene load_scene_as_baked(const std::filesystem::path& file, const Manifest& manifest, std::optional<double> scale,
+                          Progress& progress) {
+  SceneLoadOptions options;
+  options.scale = scale.value_or(manifest.scale);
+  options.recentre = manifest.light && manifest.light->recentred;
+  Scene scene = load_scene(file, options);
+  if (scene.content_hash != manifest.scene_hash) {
+    progress.note(fmt::format("{} is not the scene that the pack was baked from, or was loaded otherwise: the pictures "
+                              "may differ for that reason", file.string()));
+  }
+  if (!manifest.light) progress.note("the pack does not say how its light was sampled: the bake's defaults are taken");
+  return scene;
+}
+
 ReferenceCaster::ReferenceCaster(const std::filesystem::path& scene_file, const Manifest& manifest,
                                  std::optional<double> scale, int threads, Progress& progress)
     : progress_(progress),
-      scene_(load_as_baked(scene_file, manifest, scale, progress)),
+      scene_(load_scene_as_baked(scene_file, manifest, scale, progress)),
       rays_(scene_),
       light_(scene_, rays_, light_as_baked(manifest, threads), progress) {}
 
