@@ -9,6 +9,22 @@
 namespace probewalk {
 namespace {
 
+LightOptions light_as_baked(const Manifest& manifest, int threads, Progress& progress) {
+  LightOptions options;
+  options.threads = threads;
+  if (!manifest.light) {
+    progress.note("the pack does not say how its light was sampled: the bake's defaults are taken");
+    return options;
+  }
+  options.samples = manifest.light->samples;
+  options.bounces = manifest.light->bounces;
+  options.cache_spacing_m = manifest.light->cache_spacing_m;
+  options.seed = manifest.light->seed;
+  return options;
+}
+
+}  // namespace
+
 Scene load_as_baked(const std::filesystem::path& file, const Manifest& manifest, std::optional<double> scale,
                     Progress& progress) {
   SceneLoadOptions options;
@@ -19,29 +35,15 @@ Scene load_as_baked(const std::filesystem::path& file, const Manifest& manifest,
     progress.note(fmt::format("{} is not the scene that the pack was baked from, or was loaded otherwise: the pictures "
                               "may differ for that reason", file.string()));
   }
-  if (!manifest.light) progress.note("the pack does not say how its light was sampled: the bake's defaults are taken");
   return scene;
 }
-
-LightOptions light_as_baked(const Manifest& manifest, int threads) {
-  LightOptions options;
-  options.threads = threads;
-  if (!manifest.light) return options;
-  options.samples = manifest.light->samples;
-  options.bounces = manifest.light->bounces;
-  options.cache_spacing_m = manifest.light->cache_spacing_m;
-  options.seed = manifest.light->seed;
-  return options;
-}
-
-}  // namespace
 
 ReferenceCaster::ReferenceCaster(const std::filesystem::path& scene_file, const Manifest& manifest,
                                  std::optional<double> scale, int threads, Progress& progress)
     : progress_(progress),
       scene_(load_as_baked(scene_file, manifest, scale, progress)),
       rays_(scene_),
-      light_(scene_, rays_, light_as_baked(manifest, threads), progress) {}
+      light_(scene_, rays_, light_as_baked(manifest, threads, progress), progress) {}
 
 std::vector<ImageRgbF> ReferenceCaster::cast(const std::vector<ViewConstants>& views, int width_px,
                                              int height_px) const {

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <vector>
 
 #include "content/bake/light_field.h"
@@ -14,6 +15,10 @@
 #include "shaders/shared/probe_layout.h"
 
 namespace probewalk {
+
+// The scene as the pack's bake loaded it; `scale` overrides. Notes when it is not the one that was baked. Throws BadInput.
+Scene load_as_baked(const std::filesystem::path& scene_file, const Manifest& manifest, std::optional<double> scale,
+                    Progress& progress);
 
 class ReferenceCaster {
  public:
