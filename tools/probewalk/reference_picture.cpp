@@ -9,10 +9,13 @@
 namespace probewalk {
 namespace {
 
-LightOptions light_as_baked(const Manifest& manifest, int threads) {
+LightOptions light_as_baked(const Manifest& manifest, int threads, Progress& progress) {
   LightOptions options;
   options.threads = threads;
-  if (!manifest.light) return options;
+  if (!manifest.light) {
+    progress.note("the pack does not say how its light was sampled: the bake's defaults are taken");
+    return options;
+  }
   options.samples = manifest.light->samples;
   options.bounces = manifest.light->bounces;
   options.cache_spacing_m = manifest.light->cache_spacing_m;
@@ -32,7 +35,6 @@ Scene load_scene_as_baked(const std::filesystem::path& file, const Manifest& man
     progress.note(fmt::format("{} is not the scene that the pack was baked from, or was loaded otherwise: the pictures "
                               "may differ for that reason", file.string()));
   }
-  if (!manifest.light) progress.note("the pack does not say how its light was sampled: the bake's defaults are taken");
   return scene;
 }
 
@@ -41,7 +43,7 @@ ReferenceCaster::ReferenceCaster(const std::filesystem::path& scene_file, const 
     : progress_(progress),
       scene_(load_scene_as_baked(scene_file, manifest, scale, progress)),
       rays_(scene_),
-      light_(scene_, rays_, light_as_baked(manifest, threads), progress) {}
+      light_(scene_, rays_, light_as_baked(manifest, threads, progress), progress) {}
 
 std::vector<ImageRgbF> ReferenceCaster::cast(const std::vector<ViewConstants>& views, int width_px,
                                              int height_px) const {
