@@ -175,10 +175,9 @@ std::vector<std::string> summary(const TrialInfo& info, const std::vector<CaseRe
       all.rays, results.size(), device ? " on the device and" : "", all.float_brute.rays, brute_fine));
   lines.push_back(
       fmt::format("{} answers held a NaN or an infinity; {} walks were endless (the longest took {} look-ups); {} "
-                  "answers changed by "
-                  "a bit when nodes of the pyramid were skipped instead of walked cell by cell; where one plane stood "
-                  "for many cells, {} "
-                  "answers changed beyond ties, and distances by {:.1e} at most of the others' 99 %.",
+                  "answers changed by a bit when nodes of the pyramid were skipped instead of walked cell by cell. Where "
+                  "one plane stood for many cells, {} answers changed beyond ties; 99 % of the others' distances changed "
+                  "by {:.1e} at most.",
                   all.not_finite, all.endless, all.lookups_max, all.hierarchical_differs, all.float_flat.beyond_ties(),
                   all.float_flat.errors.percentile(0.99)));
   if (device) {

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <iterator>
 
 #include "xr/latency/report_style.h"
@@ -16,7 +18,8 @@ using stability::CaseTally;
 using stability::Comparison;
 
 constexpr const char* kStyle = R"css(
-td.bad { color: var(--missed); font-weight: 600; } td.case { min-width: 13em; } tr.place td { padding-top: 22px; font-weight: 600; text-align: left; }
+td.bad { color: var(--missed); font-weight: 600; } td.case { min-width: 13em; white-space: normal; } td { white-space: nowrap; } td.words { white-space: normal; }
+ tr.place td { padding-top: 22px; font-weight: 600; text-align: left; }
 th { vertical-align: bottom; } th.group { text-align: center; border-bottom: 1px solid var(--rule); color: var(--ink); } main { max-width: 1360px; }
 td .soft { display: block; font-size: 12px; max-width: 46ch; }
 )css";
@@ -27,17 +30,21 @@ std::string grouped(std::uint64_t value) {
   return digits;
 }
 
+// "1.2e-7".
 std::string error_text(double error) {
-  return error > 0.0 ? fmt::format("{:.1e}", error) : "0";
+  if (!(error > 0.0)) return "0";
+  const int exponent = static_cast<int>(std::floor(std::log10(error)));
+  return fmt::format("{:.1f}e{}", error / std::pow(10.0, exponent), exponent);
 }
 
 std::string zero_is_good(std::uint64_t count) {
   return fmt::format("<td{}>{}</td>", count > 0 ? " class=\"bad\"" : "", grouped(count));
 }
 
-// "12 (12 ties)" or "0".
+// "0 of 12": beyond ties, of all that differ; "0" where none does.
 std::string disagreements(const Comparison& comparison) {
   if (comparison.rays == 0) return "<td class=\"soft\">–</td>";
+  if (comparison.disagreements == 0) return "<td>0</td>";
   std::string by_class;
   for (int a = 0; a < stability::kClasses; ++a) {
     for (int b = 0; b < stability::kClasses; ++b) {
