@@ -8,8 +8,9 @@
 namespace probewalk {
 namespace {
 
-// Words that the device reads, from memory that it may not share with the CPU.
+// Words that the device reads, from memory that it may not share with the CPU. Nothing needs no memory.
 Buffer upload(const Device& device, std::span<const std::byte> bytes) {
+  if (bytes.empty()) return {};
   Buffer result(device, bytes.size(), BufferMemory::kDevice);
   if (result.mapped() != nullptr) {
     std::memcpy(result.mapped(), bytes.data(), bytes.size());

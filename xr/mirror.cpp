@@ -15,7 +15,7 @@ Mirror::Mirror(Window& window, const Device& device, VkExtent2D eye, std::uint32
       device_(device),
       eye_(eye),
       shown_(shown),
-      period_ns_(static_cast<std::int64_t>(std::llround(1e9 / window.refresh_hz()))),
+      pacer_(static_cast<std::int64_t>(std::llround(1e9 / window.refresh_hz()))),
       // SAMPLED: our images have a view, and a view wants a use that is not copying alone.
       copy_(device, {format, eye, views, VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT |
                                              VK_IMAGE_USAGE_SAMPLED_BIT}),
@@ -48,12 +48,12 @@ Mirror::~Mirror() {
 
 void Mirror::offer(const FrameTarget& target, FrameRecord& record) {
   const std::int64_t now = now_ns();
-  if (is_lost_ || now < due_ns_) return;
-  due_ns_ = now - due_ns_ < period_ns_ ? due_ns_ + period_ns_ : now + period_ns_;
+  const MirrorPacer::Turn turn = pacer_.next(now, record.predicted_display, record.period);
+  if (is_lost_ || turn == MirrorPacer::Turn::kNotDue) return;
   const VkExtent2D window = window_.framebuffer_extent();
   if (window.width == 0 || window.height == 0) return;
   record.mirror.begin = now;
-  if (!busy_) {
+  if (turn == MirrorPacer::Turn::kTaken && !busy_) {
     copy(target);
     Picture picture{target, window};
     picture.eyes.image = copy_.handle();

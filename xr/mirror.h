@@ -14,6 +14,7 @@
 #include "render/frame_target.h"
 #include "render/image.h"
 #include "xr/latency/frame_record.h"
+#include "xr/mirror_pacer.h"
 #include "xr/window.h"
 #include "xr/window_layout.h"
 #include "xr/window_swapchain.h"
@@ -32,7 +33,8 @@ class Mirror {
   // Window events; once a frame, on the thread that made the window.
   WindowInput poll() { return window_.poll(); }
   // After the frame's submit and before its image goes back to the runtime. Fills in what the record says about the
-  // mirror: nothing when no picture was due, not presented when the mirror was still busy with the last one.
+  // mirror: nothing when no picture was due, not presented when the headset was late (mirror_pacer.h) or the mirror
+  // still busy with the last one.
   void offer(const FrameTarget& target, FrameRecord& record);
 
  private:
@@ -47,8 +49,7 @@ class Mirror {
   const Device& device_;
   const VkExtent2D eye_;
   const ShownEyes shown_;
-  const std::int64_t period_ns_;
-  std::int64_t due_ns_ = 0;
+  MirrorPacer pacer_;
   Image copy_;
   VkCommandPool pool_ = VK_NULL_HANDLE;
   VkCommandBuffer commands_ = VK_NULL_HANDLE;

@@ -55,7 +55,9 @@ RunInfo run_info(const WalkOptions& options, const Display& display) {
   info.eye_width = display.source->view_extent().width;
   info.eye_height = display.source->view_extent().height;
   info.views = display.source->view_count();
-  info.method = "octant-affine";
+  const std::string settings = describe(options.choice);
+  info.method = name_of(options.choice);
+  if (settings != "default") info.method += " (" + settings + ")";
   info.samples = options.samples;
   info.pack = options.pack.filename().empty() ? options.pack.parent_path().filename() : options.pack.filename();
   info.build = read_build_info();

@@ -6,6 +6,8 @@
 #include <optional>
 #include <string>
 
+#include "content/baseline/baseline_maps.h"
+#include "content/baseline/method.h"
 #include "content/progress.h"
 #include "content/stream/residency.h"
 #include "xr/display.h"
@@ -28,6 +30,8 @@ struct WalkOptions {
   std::uint64_t budget_bytes = kUnlimitedBudget; // device memory for probes
   unsigned loader_threads = 1;
   std::uint32_t samples = 1;                     // rays of a pixel at an edge: 1, 2 or 4
+  TracerChoice choice;                           // how rays are answered
+  const BaselineMaps* maps = nullptr;            // of a choice that needs some
   std::optional<double> exposure_ev;             // default: the pack's
   std::string command;                           // the words that repeat the walk, for the report
   DisplayOpener open_display;                    // how the first display is opened; empty = probewalk::open_display

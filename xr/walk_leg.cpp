@@ -39,18 +39,26 @@ WalkLeg::WalkLeg(const WalkOptions& options, const Pack& pack, const Display& di
       watch_(watch),
       progress_(progress),
       settle_(options.settle.value_or(source_.kind() == "offscreen" && !books.left_ns)),
-      rooms_(pack, *display.device,
-             {options.budget_bytes, options.loader_threads, options.report.has_value(), !settle_}, progress),
-      renderer_(
-          *display.device, rooms_.store(),
-          {.tracer = {.extent_px = source_.view_extent(), .views = source_.view_count(), .samples = options.samples},
-           .target_format = source_.color_format(),
-           .depth_format = source_.depth_format()}),
+      rooms_(pack, *display.device, {options.budget_bytes, options.loader_threads, options.report.has_value(), !settle_}, progress),
+      baselines_(options.choice.needs_maps() && options.maps != nullptr
+                     ? std::make_unique<BaselineStore>(*display.device, *options.maps, options.choice)
+                     : nullptr),
+      renderer_(*display.device, rooms_.store(),
+                {.tracer = {.extent_px = source_.view_extent(),
+                            .views = source_.view_count(),
+                            .samples = options.samples,
+                            .setup = {options.choice, baselines_.get()}},
+                 .target_format = source_.color_format(),
+                 .depth_format = source_.depth_format()}),
       book_(books.ledger) {
   settings_.trace = default_dials(pack.manifest().radiance_scale);
   settings_.exposure = exposure_from_ev(static_cast<float>(options.exposure_ev.value_or(pack.manifest().exposure_ev)));
   settings_.depth = depth_range_of(pack.manifest().bounds);
   source_.set_depth_range(settings_.depth);
+  if (baselines_) {
+    progress.note(fmt::format("maps for {}: {:.1f} MiB on the device", name_of(options.choice),
+                              static_cast<double>(baselines_->device_bytes()) / (1 << 20)));
+  }
 }
 
 LegEnd WalkLeg::run() {

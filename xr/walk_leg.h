@@ -7,6 +7,7 @@
 
 #include "content/pack/pack_io.h"
 #include "content/progress.h"
+#include "render/baseline_store.h"
 #include "render/frame_renderer.h"
 #include "xr/display.h"
 #include "xr/frame_book.h"
@@ -59,6 +60,7 @@ class WalkLeg {
   Progress& progress_;
   bool settle_;
   WalkRooms rooms_;
+  std::unique_ptr<BaselineStore> baselines_;  // null: the method reads the pack alone
   FrameRenderer renderer_;
   FrameSettings settings_;
   WallFade wall_fade_;

@@ -96,7 +96,7 @@ struct IrradianceCache::Gather {
     glm::vec3 tangent, bitangent;
     tangent_frame(point.normal, tangent, bitangent);
     const glm::vec3 origin = point.position_m + point.geometric_normal * ray_offset_m(point.position_m);
-    const std::uint32_t turn = mix_bits(static_cast<std::uint32_t>(k), seed + pass);
+    const std::uint32_t turn = mix_place(point.position_m, seed + pass);
     const float spread_rad = std::sqrt(std::numbers::pi_v<float> / static_cast<float>(samples));
     glm::vec3 sum(0.0f), own(0.0f);
     for (int s = 0; s < samples; ++s) {

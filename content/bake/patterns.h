@@ -1,6 +1,7 @@
 // The fixed low-discrepancy patterns of the bake. No random numbers: the same point always gets the same rays.
 #pragma once
 
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <glm/glm.hpp>
@@ -32,6 +33,14 @@ inline std::uint32_t mix_bits(std::uint32_t index, std::uint32_t seed) {
   h = (h ^ (h >> 16)) * 0x85EBCA6Bu;
   h = (h ^ (h >> 13)) * 0xC2B2AE35u;
   return h ^ (h >> 16);
+}
+
+// The same from a place. A pattern that is turned by its point's place, not by its number, stays as it is when another
+// processor's rays find one point more or less somewhere else.
+inline std::uint32_t mix_place(glm::vec3 position_m, std::uint32_t seed) {
+  std::uint32_t word = seed;
+  for (int axis = 0; axis < 3; ++axis) word = mix_bits(std::bit_cast<std::uint32_t>(position_m[axis]), word);
+  return word;
 }
 
 // A pattern's points moved round the torus by a shift that depends on the word (Cranley and Patterson 1976).

@@ -91,7 +91,7 @@ float box_side(std::vector<std::pair<float, float>>& offset_and_weight, float fa
 
 void measure_proxies(int n, const std::vector<float>& distance_m, const std::vector<std::uint32_t>& normals,
                      BaselineRecord& record) {
-  double weights = 0.0, nearness = 0.0;
+  double weights = 0.0, distances = 0.0;
   std::array<std::vector<std::pair<float, float>>, 6> facing;  // lower x, upper x, lower y, ...
   std::array<float, 6> farthest_m{};
   for (int j = 0; j < n; ++j) {
@@ -101,7 +101,7 @@ void measure_proxies(int n, const std::vector<float>& distance_m, const std::vec
       const glm::dvec3 point = texel_point(n, i, j);
       const double weight = texel_weight(point);
       weights += weight;
-      nearness += weight / static_cast<double>(distance_m[texel]);
+      distances += weight * static_cast<double>(distance_m[texel]);
       const glm::vec3 hit = glm::vec3(point * (static_cast<double>(distance_m[texel]) / glm::length(point)));
       const glm::vec3 normal = decode_baseline_normal(normals[texel]);
       for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -115,7 +115,7 @@ void measure_proxies(int n, const std::vector<float>& distance_m, const std::vec
       }
     }
   }
-  record.mean_m = weights > 0.0 ? static_cast<float>(weights / nearness) : 0.0f;
+  record.mean_m = weights > 0.0 ? static_cast<float>(distances / weights) : 0.0f;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const int component = static_cast<int>(axis);
     record.box_min_m[component] = -box_side(facing[2 * axis], farthest_m[2 * axis]);

@@ -179,10 +179,10 @@ BruteForceProbe::Patch BruteForceProbe::patch_around(int i0, int j0, int side) c
 struct BruteForceProbe::Arc {
   glm::dvec3 x, d;
   double t_start;
-  glm::dvec3 normal;  // unit, of the plane through the ray and the probe
-  bool radial;        // there is no such plane: the ray runs straight at, or away from, the probe
-  glm::dvec3 from, to;  // unit, the arc's ends; of a radial ray the only directions it has
-  glm::dvec3 middle;    // unit
+  glm::dvec3 normal;          // unit, of the plane through the ray and the probe
+  bool radial;                // there is no such plane: the ray runs straight at, or away from, the probe
+  glm::dvec3 from, to;        // unit, the arc's ends; of a radial ray the only directions it has
+  glm::dvec3 middle;          // unit
   double cos_half, sin_half;  // of the angle from the middle to the ends
   bool halves;                // the middle is well defined
 
@@ -218,10 +218,12 @@ void BruteForceProbe::for_each_cell_near(const Arc& arc, const Look& look) const
   const int coarse_columns = (n_ + kCoarsePatch - 1) / kCoarsePatch, fine_columns = (n_ + kFinePatch - 1) / kFinePatch;
   for (int cj = 0; cj < n_; cj += kCoarsePatch) {
     for (int ci = 0; ci < n_; ci += kCoarsePatch) {
-      if (!arc.may_meet(coarse_[static_cast<std::size_t>(cj / kCoarsePatch * coarse_columns + ci / kCoarsePatch)])) continue;
+      if (!arc.may_meet(coarse_[static_cast<std::size_t>(cj / kCoarsePatch * coarse_columns + ci / kCoarsePatch)]))
+        continue;
       for (int fj = cj; fj < std::min(cj + kCoarsePatch, n_); fj += kFinePatch) {
         for (int fi = ci; fi < std::min(ci + kCoarsePatch, n_); fi += kFinePatch) {
-          if (!arc.may_meet(fine_[static_cast<std::size_t>(fj / kFinePatch * fine_columns + fi / kFinePatch)])) continue;
+          if (!arc.may_meet(fine_[static_cast<std::size_t>(fj / kFinePatch * fine_columns + fi / kFinePatch)]))
+            continue;
           for (int j = fj; j < fj + kFinePatch; ++j) {
             for (int i = fi; i < fi + kFinePatch; ++i) look(i, j);
           }
@@ -239,7 +241,8 @@ void BruteForceProbe::visit_cell(const Arc& arc, int i, int j, std::vector<Visit
     if (!arc.radial) {
       // Only triangles that the ray's plane through the probe crosses can be met.
       double height[3];
-      for (int k = 0; k < 3; ++k) height[k] = glm::dot(arc.normal, directions_[static_cast<std::size_t>(first.vertices[k])]);
+      for (int k = 0; k < 3; ++k)
+        height[k] = glm::dot(arc.normal, directions_[static_cast<std::size_t>(first.vertices[k])]);
       if (height[0] > 0 && height[1] > 0 && height[2] > 0) continue;
       if (height[0] < 0 && height[1] < 0 && height[2] < 0) continue;
     }
@@ -282,9 +285,8 @@ BruteAnswer BruteForceProbe::trace_every_piece(glm::dvec3 x, glm::dvec3 d, doubl
 BruteAnswer BruteForceProbe::decide(const Arc& arc, std::vector<Visit>& visits) const {
   const glm::dvec3 x = arc.x, d = arc.d;
   const double t_start = arc.t_start;
-  std::sort(visits.begin(), visits.end(), [](const Visit& a, const Visit& b) {
-    return a.t0 != b.t0 ? a.t0 < b.t0 : a.t1 < b.t1;
-  });
+  std::sort(visits.begin(), visits.end(),
+            [](const Visit& a, const Visit& b) { return a.t0 != b.t0 ? a.t0 < b.t0 : a.t1 < b.t1; });
 
   // Height above the surface, relative: f = (w_ray - w_surface) / w_ray = 1 - gradient . p, affine in t.
   BruteAnswer answer;
@@ -306,7 +308,9 @@ BruteAnswer BruteForceProbe::decide(const Arc& arc, std::vector<Visit>& visits) 
       answer.plane = piece.gradient;
       answer.t = visit.t0;
       const bool touching = !known && t_start > 0 && -f0 < texel;
-      answer.cls = touching ? BruteAnswer::Class::kHit : known ? BruteAnswer::Class::kUnknown : BruteAnswer::Class::kBehind;
+      answer.cls = touching ? BruteAnswer::Class::kHit
+                   : known  ? BruteAnswer::Class::kUnknown
+                            : BruteAnswer::Class::kBehind;
       return answer;
     }
     known = true;

@@ -1,7 +1,7 @@
 // The independent check of the tracer: the same probe, taken as what it means, a star-shaped surface of planar pieces
 // around a point, intersected in double precision by visiting every piece that it could meet. Shares no code with the
-// tracer: no octants, no map coordinates along the ray, no pyramid; directions, cones and planes only. Patches of the map
-// are passed over whole where the cone of directions around them is one that the ray never looks into.
+// tracer: no octants, no map coordinates along the ray, no pyramid; directions, cones and planes only. Patches of the
+// map are passed over whole where the cone of directions around them is one that the ray never looks into.
 #pragma once
 
 #include <cstdint>
@@ -30,8 +30,8 @@ class BruteForceProbe {
   BruteAnswer trace_every_piece(glm::dvec3 x, glm::dvec3 d, double t_start = 0.0) const;
 
  private:
-  // A piece: the cone of directions with side[k] . p >= 0 for all k, holding the plane gradient . p = 1 (w of the surface
-  // in direction q, |q|_1 = 1, is gradient . q). sky: nothing there.
+  // A piece: the cone of directions with side[k] . p >= 0 for all k, holding the plane gradient . p = 1 (w of the
+  // surface in direction q, |q|_1 = 1, is gradient . q). sky: nothing there.
   struct Piece {
     std::int32_t vertices[3];  // of its triangle, for the quick test
     std::int32_t sides;
@@ -60,7 +60,7 @@ class BruteForceProbe {
   BruteAnswer decide(const Arc& arc, std::vector<Visit>& visits) const;
 
   int n_;
-  std::vector<glm::dvec3> directions_;  // per vertex, |q|_1 = 1
+  std::vector<glm::dvec3> directions_;      // per vertex, |q|_1 = 1
   std::vector<std::uint32_t> first_piece_;  // per triangle
   std::vector<Piece> pieces_;
   std::vector<Patch> fine_, coarse_;  // kFinePatch and kCoarsePatch cells a side, row-major; the last may be cut short

@@ -28,6 +28,7 @@ using Reference = std::function<Answer(glm::dvec3 x, glm::dvec3 d)>;
 // answer jumps (an edge shared by two surfaces, a wall's rim), and rounding alone tells the sides of the jump apart; or
 // where it runs through the contender's distance (a ray that all but lies in a surface), so that rounding alone says
 // where along it the two meet.
-bool is_tie(const Reference& reference, glm::dvec3 x, glm::dvec3 d, const Answer& answer, double scale_m, double tie = kTie);
+bool is_tie(const Reference& reference, glm::dvec3 x, glm::dvec3 d, const Answer& answer, double scale_m,
+            double tie = kTie);
 
 }  // namespace probewalk::stability

@@ -19,11 +19,21 @@ struct Local {
 };
 using MakeLocal = Local (*)(Random&, const Place&);
 
-float number(Random& r, double low, double high) { return static_cast<float>(r(low, high)); }
-int axis(Random& r) { return static_cast<int>(r(0, 3)); }
-float sign(Random& r) { return r() < 0.5 ? -1.0f : 1.0f; }
-glm::vec3 inside(Random& r) { return {number(r, -2.5, 2.5), number(r, -1.2, 1.2), number(r, -2, 2)}; }
-glm::vec3 direction(Random& r) { return glm::vec3(r.direction()); }
+float number(Random& r, double low, double high) {
+  return static_cast<float>(r(low, high));
+}
+int axis(Random& r) {
+  return static_cast<int>(r(0, 3));
+}
+float sign(Random& r) {
+  return r() < 0.5 ? -1.0f : 1.0f;
+}
+glm::vec3 inside(Random& r) {
+  return {number(r, -2.5, 2.5), number(r, -1.2, 1.2), number(r, -2, 2)};
+}
+glm::vec3 direction(Random& r) {
+  return glm::vec3(r.direction());
+}
 glm::vec3 along_axis(Random& r) {
   glm::vec3 d(0.0f);
   d[axis(r)] = sign(r);
@@ -45,8 +55,12 @@ glm::vec3 on_surface(Random& r, const Place& place, double above) {
   return glm::vec3(towards * (t * (1.0 - above)));
 }
 
-Local random_ray(Random& r, const Place&) { return {inside(r), direction(r)}; }
-Local from_centre(Random& r, const Place&) { return {glm::vec3(0.0f), direction(r)}; }
+Local random_ray(Random& r, const Place&) {
+  return {inside(r), direction(r)};
+}
+Local from_centre(Random& r, const Place&) {
+  return {glm::vec3(0.0f), direction(r)};
+}
 Local through_centre(Random& r, const Place&) {
   const glm::vec3 d = direction(r);
   return {-d * number(r, 0.1, 1), d};
@@ -83,7 +97,9 @@ Local of_equal_components(Random& r, const Place&) {
   const float s = number(r, -1.2, 1.2);
   return {glm::vec3(s), r() < 0.3 ? glm::vec3(sign(r)) * std::sqrt(1.0f / 3.0f) : direction(r)};
 }
-Local axis_parallel(Random& r, const Place&) { return {inside(r), along_axis(r)}; }
+Local axis_parallel(Random& r, const Place&) {
+  return {inside(r), along_axis(r)};
+}
 Local on_plane(Random& r, const Place&) {
   glm::vec3 x = inside(r);
   x[axis(r)] = r() < 0.5 ? 0.0f : -0.0f;
@@ -109,8 +125,12 @@ Local small_component(Random& r, float small) {
   if (r() < 0.5) x[axis(r)] = small * sign(r);
   return {x, glm::normalize(d)};
 }
-Local of_1e_30(Random& r, const Place&) { return small_component(r, 1e-30f); }
-Local denormal(Random& r, const Place&) { return small_component(r, 1e-42f); }
+Local of_1e_30(Random& r, const Place&) {
+  return small_component(r, 1e-30f);
+}
+Local denormal(Random& r, const Place&) {
+  return small_component(r, 1e-42f);
+}
 Local two_zeros(Random& r, const Place&) {
   Local ray{inside(r), along_axis(r)};
   ray.x[axis(r)] = 0.0f;
@@ -155,13 +175,19 @@ Local grazing_floor(Random& r, const Place&) {
   d.y = number(r, -1e-4, 1e-4);
   return {x, glm::normalize(d)};
 }
-Local from_surface(Random& r, const Place& place) { return {on_surface(r, place, 0.0), direction(r)}; }
-Local from_above_surface(Random& r, const Place& place) { return {on_surface(r, place, 1e-5), direction(r)}; }
+Local from_surface(Random& r, const Place& place) {
+  return {on_surface(r, place, 0.0), direction(r)};
+}
+Local from_above_surface(Random& r, const Place& place) {
+  return {on_surface(r, place, 1e-5), direction(r)};
+}
 // Within the empty octahedron, from its rim to its middle.
 Local in_near_octahedron(Random& r, const Place& place) {
   return {glm::vec3(r.direction() * (r() * 0.57 * static_cast<double>(place.record.l_min_m))), direction(r)};
 }
-Local of_any_length(Random& r, const Place&) { return {inside(r), direction(r) * std::exp2(number(r, -16, 16))}; }
+Local of_any_length(Random& r, const Place&) {
+  return {inside(r), direction(r) * std::exp2(number(r, -16, 16))};
+}
 Local anywhere(Random& r, const Place&) {
   return {glm::vec3(r.direction()) * std::exp2(number(r, -20, 20)), direction(r)};
 }
@@ -170,15 +196,23 @@ Local around_pillar(Random& r, const Place&) {
   return {direction(r) * (r() < 0.5 ? number(r, 0, 0.2) : number(r, 0.3, 1.5)), direction(r)};
 }
 Local hostile(Random& r, const Place&) {
-  static const float kBad[] = {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(),
-                               -std::numeric_limits<float>::infinity(), 3e38f, -3e38f, 1e30f};
+  static const float kBad[] = {std::numeric_limits<float>::quiet_NaN(),
+                               std::numeric_limits<float>::infinity(),
+                               -std::numeric_limits<float>::infinity(),
+                               3e38f,
+                               -3e38f,
+                               1e30f};
   Local ray{inside(r), direction(r), r() < 0.5 ? 0.0f : 1.0f};
   const auto spoil = [&](glm::vec3& v) { v[axis(r)] = kBad[static_cast<int>(r(0, 6))]; };
   const double pick = r();
-  if (pick < 0.4) spoil(ray.x);
-  else if (pick < 0.8) spoil(ray.d);
-  else if (pick < 0.9) ray.t_start = kBad[static_cast<int>(r(0, 6))];
-  else ray.d = glm::vec3(r() < 0.5 ? 0.0f : 1e-42f);
+  if (pick < 0.4)
+    spoil(ray.x);
+  else if (pick < 0.8)
+    spoil(ray.d);
+  else if (pick < 0.9)
+    ray.t_start = kBad[static_cast<int>(r(0, 6))];
+  else
+    ray.d = glm::vec3(r() < 0.5 ? 0.0f : 1e-42f);
   return ray;
 }
 
@@ -201,12 +235,16 @@ struct Kind {
 const std::vector<Kind>& everywhere() {
   static const std::vector<Kind> kinds{
       {"from the centre", "The origin is the probe: the ray is one point of the map.", from_centre},
-      {"through the centre", "The ray turns by 180 degrees between one point of the map and its opposite.", through_centre},
+      {"through the centre", "The ray turns by 180 degrees between one point of the map and its opposite.",
+       through_centre},
       {"1e-6 past the centre", "All of the map's half circle is swept within a millionth of a metre.", past_centre},
-      {"away from the centre", "Parallel to the displacement but for rounding: no distance on the map.", away_from_centre},
-      {"exactly radial", "Parallel to the displacement to the last bit: one look-up, the exact distance (thesis 4.3).", exactly_radial},
+      {"away from the centre", "Parallel to the displacement but for rounding: no distance on the map.",
+       away_from_centre},
+      {"exactly radial", "Parallel to the displacement to the last bit: one look-up, the exact distance (thesis 4.3).",
+       exactly_radial},
       {"handed on", "A start within the ray, anywhere or on a surface: a texel behind is still a hit.", handed_on},
-      {"starting at t = 64 or 1000", "Crossings before the start, aimed at the probe: signs from times, not points.", starting_late},
+      {"starting at t = 64 or 1000", "Crossings before the start, aimed at the probe: signs from times, not points.",
+       starting_late},
       {"equal components", "x = y = z: three planes are crossed at once.", of_equal_components},
       {"along an axis", "Two components of the direction are zero.", axis_parallel},
       {"two zeros and a plane", "Two components are zero and the origin lies on an octant's plane, too.", two_zeros},
@@ -219,12 +257,14 @@ const std::vector<Kind>& everywhere() {
       {"over the fold", "At, along and across the octahedron's equator, through vertices.", over_fold},
       {"aimed at vertices", "Six triangles meet where the ray meets the surface.", at_vertices},
       {"along cell edges", "The ray runs on the lines of the grid: neither side is the right one.", along_cell_edges},
-      {"grazing the floor", "0.1 to 1 mm above it, nearly parallel: where they meet is all but undetermined.", grazing_floor},
+      {"grazing the floor", "0.1 to 1 mm above it, nearly parallel: where they meet is all but undetermined.",
+       grazing_floor},
       {"origin on a surface", "Whether the start is before or behind is rounding's choice.", from_surface},
       {"origin 1e-5 above a surface", "As callers start a secondary ray.", from_above_surface},
       {"inside the near octahedron", "The origin is nearer to the probe than any surface.", in_near_octahedron},
       {"direction of any length", "From 2^-16 to 2^16.", of_any_length},
-      {"numbers that are none", "NaN, infinities, 1e30 and more, directions of no length: the walk knows nothing, and says so.", hostile},
+      {"numbers that are none",
+       "NaN, infinities, 1e30 and more, directions of no length: the walk knows nothing, and says so.", hostile},
   };
   return kinds;
 }
@@ -249,21 +289,27 @@ std::vector<HardCase> hard_cases() {
     for (const Kind& kind : everywhere()) add(place, kind, 0.2);
   }
   add(PlaceId::kLeaves, {"random", "Foliage all around: three surfaces a cell.", random_ray}, 10);
-  add(PlaceId::kLeaves, {"inside the near octahedron", "The camera within the few centimetres before the first leaf.", in_near_octahedron}, 4);
+  add(PlaceId::kLeaves,
+      {"inside the near octahedron", "The camera within the few centimetres before the first leaf.",
+       in_near_octahedron},
+      4);
   add(PlaceId::kTiny, {"random", "The scene is one millimetre wide.", random_ray}, 4);
   add(PlaceId::kVast, {"random", "The scene is ten kilometres wide.", random_ray}, 4);
   add(PlaceId::kFarOut, {"random", "The scene lies 1e5 m from the origin: a float there knows 8 mm.", random_ray}, 4);
   add(PlaceId::kFarOut, {"from the centre", "The same, from where the probe is.", from_centre}, 1);
   add(PlaceId::kPlain, {"random", "Hits as far as 1e4 m, with things a metre away.", random_ray}, 4);
-  add(PlaceId::kPlain, {"from the centre", "Hits as far as 1e4 m along rays that cross nothing of the map.", from_centre}, 1);
+  add(PlaceId::kPlain,
+      {"from the centre", "Hits as far as 1e4 m along rays that cross nothing of the map.", from_centre}, 1);
   add(PlaceId::kPlain, {"anywhere", "Origins from a micrometre to a thousand kilometres away.", anywhere}, 2);
   add(PlaceId::kSky, {"random", "Sky everywhere: a probe that sees nothing proves any ray free.", random_ray}, 2);
   add(PlaceId::kSky, {"anywhere", "The same from a micrometre to a thousand kilometres away.", anywhere}, 1);
-  add(PlaceId::kSolid, {"around the pillar", "The probe is inside a solid: it must not speak of what is outside.", around_pillar}, 2);
+  add(PlaceId::kSolid,
+      {"around the pillar", "The probe is inside a solid: it must not speak of what is outside.", around_pillar}, 2);
   add(PlaceId::kLeast, {"random", "Packs' least and greatest w and sky, side by side, in one map.", random_ray}, 4);
   add(PlaceId::kLeast, {"anywhere", "The same, from a micrometre to a thousand kilometres away.", anywhere}, 2);
   add(PlaceId::kSteps, {"random", "Samples rounded to 16 bits a probe: every plane is a staircase.", random_ray}, 4);
-  add(PlaceId::kTorn, {"random", "Nine edges in ten are cut, at first and last fractions, with slopes of all kinds.", random_ray}, 4);
+  add(PlaceId::kTorn,
+      {"random", "Nine edges in ten are cut, at first and last fractions, with slopes of all kinds.", random_ray}, 4);
   add(PlaceId::kTorn, {"aimed at vertices", "The same, where the pieces meet.", at_vertices}, 1);
   return cases;
 }

@@ -14,9 +14,10 @@ namespace probewalk::stability {
 struct HardCase {
   std::string name;
   PlaceId place;
-  std::string says;           // what is hard about it, one sentence
-  double weight = 1.0;        // its share of the rays
-  // Numbers that are none: no reference has an answer; what counts is that the walk ends and says nothing but "unknown".
+  std::string says;     // what is hard about it, one sentence
+  double weight = 1.0;  // its share of the rays
+  // Numbers that are none: no reference has an answer; what counts is that the walk ends and says nothing but
+  // "unknown".
   bool hostile = false;
   // The ray runs exactly straight away from the probe: one look-up tells its answer (thesis 4.3).
   bool one_lookup = false;

@@ -20,7 +20,8 @@ inline double radical_inverse(std::uint32_t k) {
 
 // Direction k of n of a Hammersley set, uniform over the sphere, unit length.
 inline glm::dvec3 hammersley_direction(int k, int n) {
-  const double z = 1.0 - 2.0 * (k + 0.5) / n, phi = 2.0 * std::numbers::pi * radical_inverse(static_cast<std::uint32_t>(k));
+  const double z = 1.0 - 2.0 * (k + 0.5) / n,
+               phi = 2.0 * std::numbers::pi * radical_inverse(static_cast<std::uint32_t>(k));
   const double r = std::sqrt(1.0 - z * z);
   return glm::normalize(glm::dvec3(r * std::cos(phi), r * std::sin(phi), z));
 }

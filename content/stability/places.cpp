@@ -24,8 +24,12 @@ ProbeGeometry baked(const Scene& scene, glm::dvec3 position_m, int n) {
   return geometry;
 }
 
-ProbeGeometry room(int n) { return baked(furnished_room(), {0.31, 1.23, 0.47}, n); }
-ProbeGeometry grille(int n) { return baked(grille_room(), {0.31, 1.23, 0.47}, n); }
+ProbeGeometry room(int n) {
+  return baked(furnished_room(), {0.31, 1.23, 0.47}, n);
+}
+ProbeGeometry grille(int n) {
+  return baked(grille_room(), {0.31, 1.23, 0.47}, n);
+}
 
 // The same shape, `scale` times as large. Not baked anew: the baker lets nothing be nearer than 0.1 mm.
 ProbeGeometry scaled(ProbeGeometry geometry, double scale) {
@@ -82,7 +86,10 @@ ProbeGeometry torn() {
   const auto cut = [&](std::vector<std::uint8_t>& edges) {
     for (std::uint8_t& edge : edges) {
       const double pick = random();
-      edge = pick < 0.1 ? kConnected : pick < 0.45 ? 1 : pick < 0.8 ? kCutSteps : static_cast<std::uint8_t>(random(1, 65));
+      edge = pick < 0.1    ? kConnected
+             : pick < 0.45 ? 1
+             : pick < 0.8  ? kCutSteps
+                           : static_cast<std::uint8_t>(random(1, 65));
     }
   };
   cut(geometry.edges_horizontal);
@@ -104,7 +111,10 @@ const std::vector<Recipe>& recipes() {
   static const std::vector<Recipe> all{
       {PlaceId::kRoom, "furnished room", 128, 1.0, [] { return room(128); }},
       {PlaceId::kGrille, "grille", 128, 1.0, [] { return grille(128); }},
-      {PlaceId::kLeaves, "foliage", 128, 1.0, [] { return baked(leafy_room(), {0.0, 1.25, 0.0}, 128); }},
+      {PlaceId::kLeaves, "foliage", 128, 1.0,
+       [] {
+         return baked(leafy_room(), {0.0, 1.25, 0.0}, 128);
+       }},
       {PlaceId::kRoomFine, "furnished room", 512, 1.0, [] { return room(512); }},
       {PlaceId::kGrilleFine, "grille", 512, 1.0, [] { return grille(512); }},
       {PlaceId::kTiny, "room of 1 mm", 64, 1e-3 / kRoomWidth_m, [] { return scaled(room(64), 1e-3 / kRoomWidth_m); }},
@@ -115,9 +125,15 @@ const std::vector<Recipe>& recipes() {
          geometry.position_m = {1e5 + 0.1, -3e4 - 0.7, 7e4 + 1.0 / 3.0};
          return geometry;
        }},
-      {PlaceId::kPlain, "plain to 1e4 m", 128, 1.0, [] { return baked(wide_plain(), {0.0, 1.5, 0.0}, 128); }},
+      {PlaceId::kPlain, "plain to 1e4 m", 128, 1.0,
+       [] {
+         return baked(wide_plain(), {0.0, 1.5, 0.0}, 128);
+       }},
       {PlaceId::kSky, "sky", 64, 1.0, [] { return made(64, [](int, int) { return 0.0f; }); }},
-      {PlaceId::kSolid, "inside a pillar", 64, 1.0, [] { return baked(furnished_room(), {-1.83, 1.2, -1.57}, 64); }},
+      {PlaceId::kSolid, "inside a pillar", 64, 1.0,
+       [] {
+         return baked(furnished_room(), {-1.83, 1.2, -1.57}, 64);
+       }},
       {PlaceId::kLeast, "samples at limits", 32, 1.0, [] { return at_limits(); }},
       {PlaceId::kSteps, "samples of 16 bits", 64, 1.0, [] { return in_steps(room(64)); }},
       {PlaceId::kTorn, "cuts at limits", 64, 1.0, [] { return torn(); }},
@@ -131,15 +147,20 @@ const Recipe& recipe(PlaceId id) {
 
 }  // namespace
 
-std::string place_name(PlaceId id) { return recipe(id).name; }
-int place_cells(PlaceId id) { return recipe(id).n; }
+std::string place_name(PlaceId id) {
+  return recipe(id).name;
+}
+int place_cells(PlaceId id) {
+  return recipe(id).n;
+}
 
 std::unique_ptr<Place> make_place(PlaceId id) {
   const Recipe& r = recipe(id);
   ProbeGeometry geometry = r.make();
   DeviceProbe device = build_device_probe(ProbeMap{geometry, {}});
   BruteForceProbe brute(geometry);
-  auto place = std::make_unique<Place>(Place{r.name, r.scale_m, std::move(geometry), std::move(device), {}, std::move(brute)});
+  auto place =
+      std::make_unique<Place>(Place{r.name, r.scale_m, std::move(geometry), std::move(device), {}, std::move(brute)});
   place->record = record_in_memory(place->device);
   return place;
 }

@@ -11,20 +11,20 @@
 namespace probewalk::stability {
 
 enum class PlaceId {
-  kRoom,           // a furnished room with a window
-  kGrille,         // 2 cm bars every 12 cm: cuts everywhere
-  kLeaves,         // foliage all around, from 5 cm on
-  kRoomFine,       // room and grille at 512 cells a side
+  kRoom,      // a furnished room with a window
+  kGrille,    // 2 cm bars every 12 cm: cuts everywhere
+  kLeaves,    // foliage all around, from 5 cm on
+  kRoomFine,  // room and grille at 512 cells a side
   kGrilleFine,
-  kTiny,           // the room, one millimetre wide: every sample scaled
-  kVast,           // the room, ten kilometres wide
-  kFarOut,         // the room, 1e5 m from the scene's origin
-  kPlain,          // things from 1 m on, walls at 1e4 m
-  kSky,            // nothing anywhere
-  kSolid,          // a probe inside a pillar
-  kLeast,          // packs' limits: samples of the least and the greatest w, and sky, at random
-  kSteps,          // the room's samples rounded to 65535 steps of the greatest
-  kTorn,           // every edge cut, at the first or the last fraction, every slope at its clamp or random
+  kTiny,    // the room, one millimetre wide: every sample scaled
+  kVast,    // the room, ten kilometres wide
+  kFarOut,  // the room, 1e5 m from the scene's origin
+  kPlain,   // things from 1 m on, walls at 1e4 m
+  kSky,     // nothing anywhere
+  kSolid,   // a probe inside a pillar
+  kLeast,   // packs' limits: samples of the least and the greatest w, and sky, at random
+  kSteps,   // the room's samples rounded to 65535 steps of the greatest
+  kTorn,    // every edge cut, at the first or the last fraction, every slope at its clamp or random
 };
 
 struct Place {

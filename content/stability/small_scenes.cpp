@@ -58,7 +58,8 @@ Scene wide_plain() {
   for (int k = 0; k < 24; ++k) {
     const float angle = 0.7f + 2.4f * static_cast<float>(k), far_m = std::pow(1.5f, static_cast<float>(k));
     const glm::vec3 foot(far_m * std::cos(angle), 0, far_m * std::sin(angle));
-    b.box(foot - glm::vec3(0.05f * far_m, 0, 0.05f * far_m), foot + glm::vec3(0.05f * far_m, 0.6f * far_m, 0.05f * far_m));
+    b.box(foot - glm::vec3(0.05f * far_m, 0, 0.05f * far_m),
+          foot + glm::vec3(0.05f * far_m, 0.6f * far_m, 0.05f * far_m));
   }
   return b.build();
 }

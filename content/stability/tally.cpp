@@ -46,6 +46,7 @@ void Comparison::merge(const Comparison& other) {
 void CaseTally::merge(const CaseTally& other) {
   rays += other.rays;
   float_double.merge(other.float_double);
+  float_flat.merge(other.float_flat);
   device_double.merge(other.device_double);
   device_float.merge(other.device_float);
   float_brute.merge(other.float_brute);

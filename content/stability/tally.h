@@ -55,8 +55,10 @@ struct Comparison {
     }
     ++disagreements;
     ++by_class[static_cast<std::size_t>(answer.cls) % kClasses][static_cast<std::size_t>(reference.cls) % kClasses];
-    if (tie()) ++ties;
-    else if (index < beyond.index) beyond = {ray, answer, reference, index};
+    if (tie())
+      ++ties;
+    else if (index < beyond.index)
+      beyond = {ray, answer, reference, index};
   }
   void merge(const Comparison& other);
 };
@@ -65,6 +67,7 @@ struct Comparison {
 struct CaseTally {
   std::uint64_t rays = 0;
   Comparison float_double;   // C++ float against the double walk, cell by cell: all rays
+  Comparison float_flat;     // against C++ float cell by cell: what the pyramid's planes change
   Comparison device_double;  // the device against the same
   Comparison device_float;   // the device against C++ float: a difference of a bit is not one here
   Comparison float_brute;    // against brute force: some rays
@@ -72,13 +75,13 @@ struct CaseTally {
   Comparison double_brute;
   std::uint64_t device_rays = 0;
   std::uint64_t device_same_bits = 0;
-  std::uint64_t hierarchical_differs = 0;  // C++ float, from the pyramid and cell by cell: bit for bit
+  std::uint64_t hierarchical_differs = 0;  // C++ float, by pyramid without its planes and cell by cell: bit for bit
   std::uint64_t not_finite = 0;            // answers of any contender with a NaN or an infinity
   std::uint64_t endless = 0;               // walks of more look-ups than there can be
   std::uint64_t lookups = 0;               // C++ float, with the pyramid
   std::uint32_t lookups_max = 0;
   std::uint32_t lookups_bound = 0;
-  std::uint64_t more_than_one = 0;         // look-ups, of rays of which one is asked
+  std::uint64_t more_than_one = 0;                // look-ups, of rays of which one is asked
   std::array<std::uint64_t, kClasses> classes{};  // of C++ float
 
   void merge(const CaseTally& other);

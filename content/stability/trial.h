@@ -13,8 +13,8 @@
 
 namespace probewalk::stability {
 
-// The contender that is not of this library: the device, or in tests a tracer with a planted fault. Called by one thread,
-// case after case; the place stays the same object for all its cases and is alive during the call.
+// The contender that is not of this library: the device, or in tests a tracer with a planted fault. Called by one
+// thread, case after case; the place stays the same object for all its cases and is alive during the call.
 using Contender = std::function<std::vector<Answer>(const Place& place, std::span<const Ray> rays)>;
 
 struct TrialOptions {
@@ -22,6 +22,7 @@ struct TrialOptions {
   double tie = kTie;                // see agreement.h
   int threads = 0;                  // 0 = all cores
   Contender device;                 // empty = none
+  std::function<void(const HardCase&)> started;  // told of every case before its first ray; may be empty
 };
 
 inline constexpr std::uint64_t kLeastRays = 64;

@@ -30,18 +30,23 @@ Answer walk_in_double(const ProbeRecord& probe, glm::dvec3 x, glm::dvec3 d, doub
 
 Answer from_brute_force(const BruteAnswer& answer) {
   switch (answer.cls) {
-    case BruteAnswer::Class::kHit: return {kClassHit, answer.t, answer.t, answer.plane, 0};
-    case BruteAnswer::Class::kMiss: return {kClassMiss, 1e30, answer.t, {}, 0};
-    case BruteAnswer::Class::kUnknown: return {kClassUnknown, answer.t, answer.t, answer.plane, 0};
-    case BruteAnswer::Class::kBehind: return {kClassBehind, answer.t, answer.t, answer.plane, 0};
+    case BruteAnswer::Class::kHit:
+      return {kClassHit, answer.t, answer.t, answer.plane, 0};
+    case BruteAnswer::Class::kMiss:
+      return {kClassMiss, 1e30, answer.t, {}, 0};
+    case BruteAnswer::Class::kUnknown:
+      return {kClassUnknown, answer.t, answer.t, answer.plane, 0};
+    case BruteAnswer::Class::kBehind:
+      return {kClassBehind, answer.t, answer.t, answer.plane, 0};
   }
   return {};
 }
 
 std::uint32_t most_lookups(const ProbeRecord& probe, int start_level) {
   const std::uint32_t n = 1u << probe.n_log2;
-  const auto top = static_cast<std::uint32_t>(std::clamp(start_level % kWithoutPlanes, 0, static_cast<int>(probe.n_log2) - 1));
-  return 4 * (n + 1) * (top + 1);
+  const auto top =
+      static_cast<std::uint32_t>(std::clamp(start_level % kWithoutPlanes, 0, static_cast<int>(probe.n_log2) - 1));
+  return 4 * (n + 1) * (top + 2);
 }
 
 }  // namespace probewalk::stability

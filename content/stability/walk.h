@@ -39,13 +39,14 @@ struct Answer {
 // The ray's origin relative to the probe without rounding.
 glm::dvec3 exact_origin(const ProbeRecord& probe, const Ray& ray);
 
-// Pyramid level of the first look-up: 0 = cell by cell.
+// Pyramid level of the first look-up: 0 = cell by cell; with kWithoutPlanes added, planar entries are gone through cell
+// by cell, too, for the very answers of cell by cell.
 Answer walk_in_float(const ProbeRecord& probe, const Ray& ray, int start_level);
 Answer walk_in_double(const ProbeRecord& probe, glm::dvec3 x, glm::dvec3 d, double t_start, int start_level);
 Answer from_brute_force(const BruteAnswer& answer);
 
-// More look-ups than this no walk can take: at most four octants, in each at most a step for every line of its grid, and
-// before each step at most a descent through all levels (shaders/shared/tracer_walk.h).
+// More look-ups than this no walk can take: at most four octants, in each at most a step for every line of its grid,
+// and before each step at most a descent through all levels and the look at a plane (shaders/shared/tracer_walk.h).
 std::uint32_t most_lookups(const ProbeRecord& probe, int start_level);
 
 }  // namespace probewalk::stability

@@ -37,7 +37,7 @@ struct BaselineRecord {
   pw_uvec2 minimum_address;
   pw_uvec2 normal_address;
   pw_uint n_log2;  // 0 = none
-  float mean_m;    // harmonic mean of the distances: the sphere proxy's radius; 0 = the probe sees sky alone
+  float mean_m;    // mean of the distances by solid angle: the sphere proxy's radius; 0 = the probe sees sky alone
   pw_vec3 box_min_m;  // of the box proxy, relative to the probe, which is inside
   float reserved0;
   pw_vec3 box_max_m;

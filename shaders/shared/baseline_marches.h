@@ -5,7 +5,7 @@
 //                    nodes of the pyramid of minima (5.6, 9.1)
 //   march_two_level  texels of a map of minima, 16 times coarser, and where one may hold a hit, its fine texels
 //                    (McGuire, Mara, Nowrouzezahrai, Luebke 2017, Precomputed light field probes)
-// Included after tracer_walk.h, whose WalkState, axis_crossing, octant_sign and pyramid_offset it uses. No include
+// Included after tracer_walk.h, whose WalkState, axis_crossing and octant_sign it uses. No include
 // guard: C++ includes it once a type.
 //
 // A texel is taken for a piece of the sphere of its distance. A line between two texels is a plane through the probe,
@@ -33,6 +33,12 @@ struct MarchRules {
 // march_2d's nodes are at most the map's side over 16, where it first looks: fewest look-ups in rooms, at 128 to 2048
 // texels a side alike, and what makes their number grow with the logarithm of the side.
 #define PW_TOP_BELOW_MAP 4
+
+// Offset of level l >= 1 of the pyramid of minima, in words: the levels before it have n^2/4 + n^2/16 + ...
+PW_FUNCTION int minimum_level_offset(int n, int level) {
+  int finer = n >> (level - 1);
+  return (n * n - finer * finer) / 3;
+}
 
 PW_FUNCTION real length_of(real3 v) {
   return sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
@@ -289,7 +295,7 @@ PW_FUNCTION bool march_segment(BaselineRecord map, MarchRules rules, real3 x, re
     int at = gy * 2 * nodes + gx;
     state.lookups += 1u;
     if (level > 0) {
-      real minimum = pw_word_real(map.minimum_address, pyramid_offset(n, level) + at);
+      real minimum = pw_word_real(map.minimum_address, minimum_level_offset(n, level) + at);
       // The distance is convex along the ray: but for rounding, it is nowhere in the node greater than at its ends.
       if (!(max(distance_in, distance_out) * real(1.000001) < minimum)) {
         level = leap ? 0 : level - 1;

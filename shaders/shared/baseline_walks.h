@@ -53,8 +53,8 @@ PW_FUNCTION WalkState walk_environment(ProbeRecord probe, real3 d, real t_start)
   return state;
 }
 
-// The answer of a proxy that the ray leaves at t: sky where the probe sees sky there. A proxy that the ray does not leave
-// from inside says nothing.
+// The answer of a proxy that the ray leaves at t: sky where the probe sees sky there. A proxy is seen from inside: of rays
+// that start elsewhere it says nothing.
 PW_FUNCTION WalkState proxy_answer(BaselineRecord map, real3 x, real3 d, real t, real t_start) {
   if (!(t > t_start)) return baseline_state(kClassUnknown, t_start, t_start);
   real3 q = x + d * t;
@@ -70,10 +70,9 @@ PW_FUNCTION WalkState walk_sphere_proxy(BaselineRecord map, real3 x, real3 d, re
   if (!(radius > real(0))) return baseline_state(kClassMiss, PW_NEVER, t_start);
   real along = x.x * d.x + x.y * d.y + x.z * d.z;
   real beyond = x.x * x.x + x.y * x.y + x.z * x.z - radius * radius;
-  real square = along * along - beyond;
-  if (square < real(0)) return baseline_state(kClassUnknown, t_start, t_start);
+  if (beyond > real(0)) return baseline_state(kClassUnknown, t_start, t_start);
   // The farther root, by the form in which nothing cancels.
-  real root = sqrt(square);
+  real root = sqrt(along * along - beyond);
   real t = along > real(0) ? -beyond / (along + root) : root - along;
   return proxy_answer(map, x, d, t, t_start);
 }
@@ -83,19 +82,15 @@ PW_FUNCTION WalkState walk_sphere_proxy(BaselineRecord map, real3 x, real3 d, re
 PW_FUNCTION WalkState walk_box_proxy(BaselineRecord map, real3 x, real3 d, real t_start) {
   if (!(map.mean_m > 0.0f)) return baseline_state(kClassMiss, PW_NEVER, t_start);
   real3 low = real3(map.box_min_m), high = real3(map.box_max_m);
-  real enter = -PW_NEVER, leave = PW_NEVER;
+  real leave = PW_NEVER;
   for (int axis = 0; axis < 3; ++axis) {
     real at = axis == 0 ? x.x : axis == 1 ? x.y : x.z, slope = axis == 0 ? d.x : axis == 1 ? d.y : d.z;
     real from = axis == 0 ? low.x : axis == 1 ? low.y : low.z, to = axis == 0 ? high.x : axis == 1 ? high.y : high.z;
-    if (abs(slope) < real(1e-20)) {
-      if (at < from || at > to) leave = -PW_NEVER;
-      continue;
-    }
-    real near = ((slope > real(0) ? from : to) - at) / slope, far = ((slope > real(0) ? to : from) - at) / slope;
-    enter = max(enter, near);
-    leave = min(leave, far);
+    if (at < from || at > to) return baseline_state(kClassUnknown, t_start, t_start);
+    if (abs(slope) < real(1e-20)) continue;
+    leave = min(leave, ((slope > real(0) ? to : from) - at) / slope);
   }
-  return proxy_answer(map, x, d, leave < enter ? -PW_NEVER : leave, t_start);
+  return proxy_answer(map, x, d, leave, t_start);
 }
 
 // The probe as a distance impostor (Szirmay-Kalos, Aszodi, Lazanyi, Premecz 2005): a linear search for two points of the

@@ -60,6 +60,12 @@ PW_FUNCTION real segment_t(OctantSegment s, real lambda) {
   return min((s.tw0 + lambda * s.dtw) / max(s.w0 + lambda * s.dw, real(1e-30)), PW_NEVER);
 }
 
+// The same, from the far end: there 1 - lambda, of which w at infinity is a multiple, would have lost its digits.
+PW_FUNCTION real segment_t_from_end(OctantSegment s, real rest) {
+  real w_end = s.w0 + s.dw, tw_end = s.tw0 + s.dtw;
+  return min((tw_end - rest * s.dtw) / max(w_end - rest * s.dw, real(1e-30)), PW_NEVER);
+}
+
 // Highest level of a probe's pyramid; -1: it has none.
 PW_FUNCTION int pyramid_top(int n_log2) { return n_log2 < 4 ? -1 : ((n_log2 - 4) >> 1) * 2 + 1; }
 
@@ -110,8 +116,10 @@ PW_FUNCTION bool meet_piece(OctantSegment s, real t_start, real texel, bool cut,
   }
   if (f1 <= real(0)) {
     real tau = f0 > real(0) ? f0 / (f0 - f1) : real(0);
+    real lambda = lambda0 + (lambda1 - lambda0) * tau;
+    real rest = (real(1) - lambda1) + (lambda1 - lambda0) * (f0 > real(0) ? f1 / (f1 - f0) : real(1));
     state.status = kClassHit;
-    state.t = max(t_start, segment_t(s, lambda0 + (lambda1 - lambda0) * tau));
+    state.t = max(t_start, lambda < real(0.5) ? segment_t(s, lambda) : segment_t_from_end(s, rest));
     state.t_safe = max(t_start, segment_t(s, lambda0));
     return true;
   }

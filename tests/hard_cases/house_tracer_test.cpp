@@ -36,7 +36,8 @@ constexpr int kCells = 128;
 Scene load_house() {
   const std::filesystem::path file = std::filesystem::path(PROBEWALK_TEST_OUTPUT_DIR) / "hard_cases_house.glb";
   const std::vector<std::byte> bytes = make_procedural_glb("house");
-  std::ofstream(file, std::ios::binary).write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  std::ofstream(file, std::ios::binary)
+      .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
   return load_scene(file);
 }
 
@@ -56,7 +57,8 @@ class Table {
   void print(int rays) const {
     std::printf("%s, %d rays:%s\n", title_.c_str(), rays, rows_.empty() ? " no disagreement" : "");
     for (const auto& [what, counts] : rows_) {
-      std::printf("  %-34s %6d  of which the answer jumps within 2e-6 of the ray (ties): %d\n", what.c_str(), counts.first, counts.second);
+      std::printf("  %-34s %6d  of which the answer jumps within 2e-6 of the ray (ties): %d\n", what.c_str(),
+                  counts.first, counts.second);
     }
   }
   int unexplained() const { return unexplained_; }
@@ -99,12 +101,14 @@ TEST(HouseTracer, AllCompilationsAndBruteForceAgree) {
     batch.push_back({head, glm::dvec3(glm::vec3(random.direction()))});
   }
 
-  // Both share the records' slopes, which are 16-bit codes (1.5e-6 of w): a jump closer than that is a tie in double too.
+  // Both share the records' slopes, which are 16-bit codes (1.5e-6 of w): a jump closer than that is a tie in double
+  // too.
   // 1. One walk each, against brute force over every piece of the probe's surface.
   std::vector<Answer> singles(kRays), twices(kRays), truths(kRays);
   std::vector<char> tie32(kRays), tie64(kRays);
   std::vector<std::unique_ptr<BruteForceProbe>> brutes(geometry.size());
-  tbb::parallel_for(std::size_t{0}, geometry.size(), [&](std::size_t p) { brutes[p] = std::make_unique<BruteForceProbe>(geometry[p]); });
+  tbb::parallel_for(std::size_t{0}, geometry.size(),
+                    [&](std::size_t p) { brutes[p] = std::make_unique<BruteForceProbe>(geometry[p]); });
   const auto split_direction = [](const WorldRay& ray) { return glm::vec3(glm::normalize(ray.direction)); };
   tbb::parallel_for(0, kRays, [&](int k) {
     glm::vec3 hi, lo;
@@ -128,7 +132,8 @@ TEST(HouseTracer, AllCompilationsAndBruteForceAgree) {
     tie32[k] = is_tie(singles[k]);
     tie64[k] = is_tie(twices[k]);
   });
-  Table single("one walk, C++ float against brute force in double"), twice("one walk, C++ double against brute force in double");
+  Table single("one walk, C++ float against brute force in double"),
+      twice("one walk, C++ double against brute force in double");
   std::vector<double> errors;
   for (int k = 0; k < kRays; ++k) {
     const std::string to = std::string(" -> ") + class_name(truths[k].cls);
@@ -141,8 +146,8 @@ TEST(HouseTracer, AllCompilationsAndBruteForceAgree) {
   single.print(kRays);
   twice.print(kRays);
   std::sort(errors.begin(), errors.end());
-  std::printf("  distance, float against brute force: median %.2g, p99 %.2g, max %.2g relative\n", errors[errors.size() / 2],
-              errors[errors.size() * 99 / 100], errors.back());
+  std::printf("  distance, float against brute force: median %.2g, p99 %.2g, max %.2g relative\n",
+              errors[errors.size() / 2], errors[errors.size() * 99 / 100], errors.back());
 
   // 2. Whole answers, hand-offs included: device against C++ float (the same arithmetic), float against double.
   const Device device({}, {});
@@ -174,20 +179,24 @@ TEST(HouseTracer, AllCompilationsAndBruteForceAgree) {
     };
     const auto jumps = [&](int cls, double t) {
       for (int j = 0; j < 32; ++j) {
-        const f64::RayAnswer beside = in_double(origin + 2e-6 * stability::hammersley_direction(j, 32),
-                                                glm::dvec3(d) + 2e-6 * stability::hammersley_direction((j * 13) % 32, 32));
+        const f64::RayAnswer beside =
+            in_double(origin + 2e-6 * stability::hammersley_direction(j, 32),
+                      glm::dvec3(d) + 2e-6 * stability::hammersley_direction((j * 13) % 32, 32));
         if (!differs(cls, t, beside.cls, beside.t)) return true;
       }
       return false;
     };
-    if (differs(g.answer, g.t_m, a.cls, a.t)) glsl.add(std::string(class_name(g.answer)) + " -> " + class_name(a.cls), jumps(g.answer, g.t_m));
-    if (differs(a.cls, a.t, b.cls, b.t)) precision.add(std::string(class_name(a.cls)) + " -> " + class_name(b.cls), jumps(a.cls, a.t));
+    if (differs(g.answer, g.t_m, a.cls, a.t))
+      glsl.add(std::string(class_name(g.answer)) + " -> " + class_name(a.cls), jumps(g.answer, g.t_m));
+    if (differs(a.cls, a.t, b.cls, b.t))
+      precision.add(std::string(class_name(a.cls)) + " -> " + class_name(b.cls), jumps(a.cls, a.t));
   }
   std::sort(lookup_counts.begin(), lookup_counts.end());
   glsl.print(kRays);
   std::printf("  bit-identical (class, distance, probe): %d of %d\n", bits, kRays);
   precision.print(kRays);
-  std::printf("look-ups per ray: mean %.1f, p99 %.0f; unresolved: %.2f %%\n", lookups / kRays, lookup_counts[kRays * 99 / 100], 100.0 * unknown / kRays);
+  std::printf("look-ups per ray: mean %.1f, p99 %.0f; unresolved: %.2f %%\n", lookups / kRays,
+              lookup_counts[kRays * 99 / 100], 100.0 * unknown / kRays);
 
   EXPECT_EQ(single.unexplained(), 0);
   EXPECT_EQ(twice.unexplained(), 0);

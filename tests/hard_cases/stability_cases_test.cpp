@@ -35,7 +35,8 @@ Contender on(WalkBatch& batch) {
       last = name;
     }
     std::vector<WalkRay> words;
-    for (const Ray& ray : rays) words.push_back({ray.origin_hi_m, ray.t_start, ray.origin_lo_m, 0.0f, ray.direction, 0.0f});
+    for (const Ray& ray : rays)
+      words.push_back({ray.origin_hi_m, ray.t_start, ray.origin_lo_m, 0.0f, ray.direction, 0.0f});
     std::vector<Answer> answers;
     for (const WalkEnd& end : batch.walk(words, kStartLevel)) {
       answers.push_back({end.status, end.t, end.t_safe, glm::dvec3(end.plane), end.lookups});
@@ -48,7 +49,7 @@ TEST(HardCases, HoldOnTheDeviceAndInFloatAndInDouble) {
   const Device device({}, {});
   WalkBatch batch(device);
   TrialOptions options;
-  options.rays = 60000;
+  options.rays = PROBEWALK_SANITIZED ? 12000 : 60000;
   options.device = on(batch);
   SilentProgress silent;
   const std::vector<CaseResult> results = run_cases(hard_cases(), options, silent);
@@ -71,7 +72,8 @@ TEST(HardCases, AnyPyramidLevelGivesTheSameBits) {
     const std::unique_ptr<Place> place = make_place(id);
     for (const HardCase& hard : cases_at(id)) {
       Random random(11);
-      const int count = hard.name == "random" ? 30000 : 1500;
+      const int count =
+          hard.name == "random" ? (PROBEWALK_SANITIZED ? 3000 : 30000) : (PROBEWALK_SANITIZED ? 200 : 1500);
       for (int k = 0; k < count; ++k) {
         Ray ray = hard.ray(random, *place);
         if (k % 3 == 0) ray.t_start = static_cast<float>(random(0, 2));
@@ -121,7 +123,8 @@ TEST(HardCases, BruteForceLooksAtEveryPieceThatCounts) {
         const glm::dvec3 x = exact_origin(place->record, ray), d(ray.direction);
         const BruteAnswer fast = place->brute.trace(x, d, ray.t_start);
         const BruteAnswer slow = place->brute.trace_every_piece(x, d, ray.t_start);
-        ASSERT_EQ(static_cast<int>(fast.cls), static_cast<int>(slow.cls)) << place->name << ", " << hard.name << " ray " << k;
+        ASSERT_EQ(static_cast<int>(fast.cls), static_cast<int>(slow.cls))
+            << place->name << ", " << hard.name << " ray " << k;
         ASSERT_EQ(fast.t, slow.t) << place->name << ", " << hard.name << " ray " << k;
       }
     }
@@ -155,7 +158,8 @@ std::string first_failure(std::function<void(Answer&)> spoil) {
 TEST(HardCases, PlantedFaultsAreFound) {
   EXPECT_EQ(first_failure([](Answer&) {}), "");
   EXPECT_THAT(first_failure([](Answer& a) { a.t *= 1.05; }), HasSubstr("beyond ties"));
-  EXPECT_THAT(first_failure([](Answer& a) { a.cls = a.cls == kClassHit ? kClassMiss : kClassHit; }), HasSubstr("beyond ties"));
+  EXPECT_THAT(first_failure([](Answer& a) { a.cls = a.cls == kClassHit ? kClassMiss : kClassHit; }),
+              HasSubstr("beyond ties"));
   EXPECT_THAT(first_failure([](Answer& a) { a.plane.x = std::numeric_limits<double>::quiet_NaN(); }), HasSubstr("NaN"));
   EXPECT_THAT(first_failure([](Answer& a) { a.lookups = 1u << 20; }), HasSubstr("more look-ups"));
 }

@@ -88,7 +88,7 @@ TEST_F(TriangleQueryTest, LetsRaysThroughWhereAlphaSaysSo) {
 }
 
 TEST_F(TriangleQueryTest, TakesNoRayAndMisses) {
-  const Scene scene = test::load_procedural("grove");
+  const Scene scene = test::load_procedural("two-rooms");
   const TriangleQuery query(device, scene);
   EXPECT_EQ(query.trace({}, {}), 0);
   const std::vector<TriangleRay> up{{{0, 50, 0}, 0.0f, {0, 1, 0}, 0.0f}};

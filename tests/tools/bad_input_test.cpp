@@ -113,7 +113,7 @@ TEST(Help, TeachesEveryCommand) {
   const fs::path dir = fresh_folder("help");
   const RunResult whole = run_probewalk(dir, {"--help"});
   EXPECT_EQ(whole.exit_code, 0);
-  for (const char* command : {"scene", "bake", "info", "walk", "render", "trace", "report"}) {
+  for (const char* command : {"scene", "bake", "info", "walk", "render", "trace", "report", "stability"}) {
     EXPECT_THAT(whole.out, HasSubstr(command));
     const RunResult r = run_probewalk(dir, {command, "--help"});
     EXPECT_EQ(r.exit_code, 0) << command;

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "xr/frame_pacer.h"
+#include "xr/mirror_pacer.h"
 #include "xr/path.h"
 #include "xr/window_layout.h"
 
@@ -168,6 +169,37 @@ TEST(FramePacer, KeepsToItsTicksAndSkipsThoseItMissed) {
   const auto very_late = pacer.next(1570);
   EXPECT_EQ(very_late.wake_ns, 1570);
   EXPECT_EQ(very_late.predicted_display_ns, 1600);
+}
+
+// Frames every `step` refreshes of the headset, its refreshes as long as the window's: how many pictures are taken.
+int pictures_taken(MirrorPacer& pacer, std::int64_t& now_ns, int frames, int step) {
+  constexpr std::int64_t kRefresh_ns = 10'000'000;
+  int taken = 0;
+  for (int k = 0; k < frames; ++k) {
+    now_ns += step * kRefresh_ns;
+    taken += pacer.next(now_ns, now_ns + kRefresh_ns, kRefresh_ns) == MirrorPacer::Turn::kTaken;
+  }
+  return taken;
+}
+
+TEST(MirrorPacer, TakesEveryRefreshUntilTheHeadsetIsLateAndAgainAfterwards) {
+  MirrorPacer pacer(10'000'000);
+  std::int64_t now_ns = 5'000'000'000;
+  EXPECT_EQ(pictures_taken(pacer, now_ns, 100, 1), 100);
+  const int late = pictures_taken(pacer, now_ns, 100, 2);  // two seconds
+  EXPECT_GE(late, 7) << "the window still moves";
+  EXPECT_LE(late, 10);
+  pictures_taken(pacer, now_ns, 40, 1);
+  EXPECT_EQ(pictures_taken(pacer, now_ns, 100, 1), 100);
+}
+
+TEST(MirrorPacer, IsNotDueBeforeTheWindowRefreshes) {
+  MirrorPacer pacer(10'000'000);
+  EXPECT_EQ(pacer.next(50'000'000, 60'000'000, 5'000'000), MirrorPacer::Turn::kTaken);
+  EXPECT_EQ(pacer.next(55'000'000, 65'000'000, 5'000'000), MirrorPacer::Turn::kNotDue);
+  EXPECT_EQ(pacer.next(61'000'000, 70'000'000, 5'000'000), MirrorPacer::Turn::kTaken);
+  // The headset has missed a refresh; the next picture would be due, but it waits twice as long.
+  EXPECT_EQ(pacer.next(71'000'000, 80'000'000, 5'000'000), MirrorPacer::Turn::kSkipped);
 }
 
 TEST(WindowLayout, KeepsTheEyesShapeAndCentresThem) {

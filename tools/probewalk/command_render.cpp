@@ -17,6 +17,7 @@
 #include "render/view.h"
 #include "shaders/shared/display_transform.h"
 #include "tools/probewalk/commands.h"
+#include "tools/probewalk/method_options.h"
 #include "tools/probewalk/named_poses.h"
 #include "tools/probewalk/reference_picture.h"
 #include "tools/probewalk/still.h"
@@ -44,8 +45,9 @@ struct RenderArguments {
   double ev = 0.0;
   CLI::Option* ev_option = nullptr;
   bool reference = false;
-  std::string scene;
+  MethodOptions method;  // its scene is the reference's, too
   double scale = 0.0;
+  std::optional<double> own_scale() const { return scale > 0.0 ? std::optional(scale) : std::nullopt; }
 };
 
 VkExtent2D parse_size(const std::string& text) {
@@ -142,11 +144,13 @@ class RenderJob {
         extent_(parse_size(arguments.size)),
         poses_(chosen_poses()),
         progress_(make_progress(common)),
+        choice_(chosen_tracer(arguments.method)),
         device_({}, {.device = common.device}),
-        drawer_(pack_, device_, extent_, arguments.stereo ? 2 : 1, arguments.samples, *progress_) {
+        drawer_(pack_, device_, extent_, arguments.stereo ? 2 : 1, arguments.samples, *progress_, choice_,
+                chosen_maps(choice_, arguments.method, pack_, arguments.own_scale(), common.threads, *progress_).get()) {
     if (arguments.reference) {
-      const std::optional<double> scale = arguments.scale > 0.0 ? std::optional(arguments.scale) : std::nullopt;
-      reference_ = std::make_unique<ReferenceCaster>(arguments.scene, pack_.manifest(), scale, common.threads, *progress_);
+      reference_ = std::make_unique<ReferenceCaster>(arguments.method.scene, pack_.manifest(), arguments.own_scale(),
+                                                     common.threads, *progress_);
     }
   }
 
@@ -174,6 +178,7 @@ class RenderJob {
   const VkExtent2D extent_;
   const std::vector<NamedPose> poses_;
   const std::unique_ptr<Progress> progress_;
+  const TracerChoice choice_;
   const Device device_;
   StillDrawer drawer_;
   std::unique_ptr<ReferenceCaster> reference_;
@@ -206,6 +211,8 @@ nlohmann::json RenderJob::draw(const NamedPose& pose) {
                            {"width", width_px()},
                            {"height", height_px()},
                            {"views", view_count()},
+                           {"method", name_of(choice_)},
+                           {"settings", describe(choice_)},
                            {"exposure_ev", ev_}};
   if (!pose.name.empty()) report["name"] = pose.name;
   count(still, report);
@@ -304,11 +311,12 @@ void check_usage(const RenderArguments& arguments) {
   if (!arguments.pose.empty() && !arguments.poses_file.empty()) {
     throw BadUsage("--pose and --poses: give one of them");
   }
-  if (arguments.reference && arguments.scene.empty()) {
+  const std::string& scene = arguments.method.scene;
+  if (arguments.reference && scene.empty()) {
     throw BadUsage("--reference casts at the triangles: name the scene that the pack was baked from with --scene FILE");
   }
-  if (!arguments.reference && !arguments.scene.empty()) {
-    throw BadUsage("--scene is read for --reference alone: add --reference or leave it away");
+  if (!arguments.reference && !scene.empty() && !chosen_tracer(arguments.method).needs_maps()) {
+    throw BadUsage("--scene is read for --reference and for methods that need maps: add --reference or leave it away");
   }
 }
 
@@ -364,7 +372,8 @@ void add_render_command(CLI::App& app, CommonOptions& common) {
       "--reference a table of them; the scene's light is built once for all.\n\n"
       "  probewalk render house.probes -o still.png --pose 1,1.6,2,30,0 --stereo\n"
       "  probewalk render house.probes -o still.png --reference --scene house.glb\n"
-      "  probewalk render house.probes -o still.png --poses views.txt");
+      "  probewalk render house.probes -o still.png --poses views.txt\n"
+      "  probewalk render house.probes -o still.png --method two-level --scene house.glb");
   auto arguments = std::make_shared<RenderArguments>();
   command->add_option("pack", arguments->pack, "The pack (a folder NAME.probes)")->required();
   command->add_option("-o,--output", arguments->output, "The picture: .png or .exr")->required();
@@ -385,9 +394,11 @@ void add_render_command(CLI::App& app, CommonOptions& common) {
   arguments->ev_option = command->add_option("--ev", arguments->ev, "Exposure value at ISO 100 (default: the pack's)")
       ->check(CLI::Range(-30.0, 30.0));
   command->add_flag("--reference", arguments->reference, "Cast the picture at the triangles, and compare");
-  command->add_option("--scene", arguments->scene, "The scene that the pack was baked from, for --reference");
-  command->add_option("--scale", arguments->scale, "Metres per unit of the scene's file, for --reference (default: as the pack was baked)")
+  command->add_option("--scene", arguments->method.scene,
+                      "The scene that the pack was baked from, for --reference and for methods that need maps of it");
+  command->add_option("--scale", arguments->scale, "Metres per unit of the scene's file (default: as the pack was baked)")
       ->check(CLI::PositiveNumber);
+  add_method_options(*command, arguments->method);
   add_common_options(*command, common);
   command->callback([arguments, &common] { run_render(*arguments, common); });
 }

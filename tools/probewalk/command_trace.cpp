@@ -7,13 +7,14 @@
 #include <iostream>
 #include <sstream>
 
+#include "content/baseline/host_tracer.h"
 #include "content/error.h"
 #include "content/pack/pack_format.h"
 #include "content/pack/pack_io.h"
 #include "content/probe/probe_set.h"
-#include "content/probe/tracer_f32.h"
 #include "content/probe/tracer_f64.h"
 #include "tools/probewalk/commands.h"
+#include "tools/probewalk/method_options.h"
 
 namespace probewalk {
 
@@ -25,6 +26,7 @@ struct TraceOptions {
   std::string output;
   std::string arithmetic = "float";
   double pixel_angle_deg = 0.05;
+  MethodOptions method;
 };
 
 struct Ray {
@@ -68,25 +70,27 @@ std::vector<Answer> trace_all(const std::vector<Ray>& rays, const TraceOne& trac
   return answers;
 }
 
+// Settings beyond what the device has, for the product's own method.
+Answer trace_in_double(const ProbeSet& set, const TraceConstants& dials, const TracerChoice& choice, const Ray& ray,
+                       float angle) {
+  const f64::RayAnswer a = f64::trace_ray(set.grid(), dials, choice.rules, ray.origin_m, glm::dvec3(0.0), ray.direction,
+                                          choice.start_level());
+  unsigned reads = 0;
+  const glm::vec3 rgb = f64::ray_radiance(set.grid(), dials, a, ray.origin_m, glm::dvec3(0.0), ray.direction, angle, reads);
+  return Answer{a.cls, a.t, rgb, a.probe, a.lookups};
+}
+
 std::vector<Answer> trace_rays(const ProbeSet& set, const TraceConstants& dials, const TraceOptions& options,
-                               const std::vector<Ray>& rays) {
+                               const TracerChoice& choice, const BaselineMaps* maps, const std::vector<Ray>& rays) {
   const float angle = static_cast<float>(glm::radians(options.pixel_angle_deg));
   if (options.arithmetic == "double") {
-    return trace_all(rays, [&](const Ray& ray) {
-      const f64::RayAnswer a = f64::trace_ray(set.grid(), dials, ray.origin_m, glm::dvec3(0.0), ray.direction, kStartLevel);
-      unsigned reads = 0;
-      const glm::vec3 rgb = f64::ray_radiance(set.grid(), dials, a, ray.origin_m, glm::dvec3(0.0), ray.direction, angle, reads);
-      return Answer{a.cls, a.t, rgb, a.probe, a.lookups};
-    });
+    const TraceConstants chosen = with_choice(dials, choice);
+    return trace_all(rays, [&](const Ray& ray) { return trace_in_double(set, chosen, choice, ray, angle); });
   }
+  const HostTracer tracer(set, dials, choice, maps);
   return trace_all(rays, [&](const Ray& ray) {
-    glm::vec3 hi, lo;
-    split_position(ray.origin_m, hi, lo);
-    const glm::vec3 d(ray.direction);
-    const f32::RayAnswer a = f32::trace_ray(set.grid(), dials, hi, lo, d, kStartLevel);
-    unsigned reads = 0;
-    const glm::vec3 rgb = f32::ray_radiance(set.grid(), dials, a, hi, lo, d, angle, reads);
-    return Answer{a.cls, a.t, rgb, a.probe, a.lookups};
+    const BatchAnswer a = tracer.trace(ray.origin_m, ray.direction, angle);
+    return Answer{a.answer, a.t_m, a.radiance, a.probe, a.lookups};
   });
 }
 
@@ -104,7 +108,14 @@ void print(std::FILE* out, const std::vector<Answer>& answers) {
   }
 }
 
-void run_trace(const TraceOptions& options) {
+void run_trace(const TraceOptions& options, const CommonOptions& common) {
+  const TracerChoice choice = chosen_tracer(options.method);
+  if (options.arithmetic == "double" && choice.is_baseline()) {
+    throw BadUsage("--arithmetic double is the product's reference; method " + options.method.method + " is traced in float");
+  }
+  if (!options.method.scene.empty() && !choice.needs_maps()) {
+    throw BadUsage("--scene is read for methods that need maps; method " + options.method.method + " needs none");
+  }
   const Pack pack = Pack::open(options.pack);
   std::vector<Ray> rays;
   if (options.rays == "-") {
@@ -115,7 +126,10 @@ void run_trace(const TraceOptions& options) {
     rays = read_rays(file, options.rays);
   }
   const ProbeSet set = ProbeSet::read(pack);
-  const std::vector<Answer> answers = trace_rays(set, default_dials(pack.manifest().radiance_scale), options, rays);
+  const std::unique_ptr<Progress> progress = make_progress(common);
+  const auto maps = chosen_maps(choice, options.method, pack, std::nullopt, common.threads, *progress);
+  const std::vector<Answer> answers =
+      trace_rays(set, default_dials(pack.manifest().radiance_scale), options, choice, maps.get(), rays);
   print(stdout, answers);
 }
 
@@ -136,8 +150,10 @@ void add_trace_command(CLI::App& app, CommonOptions& common) {
       ->check(CLI::IsMember({"float", "double"}))->capture_default_str();
   command->add_option("--pixel-angle", options->pixel_angle_deg, "Angular width of a ray in degrees: picks the radiance mip")
       ->check(CLI::Range(0.0, 90.0))->capture_default_str();
+  add_method_options(*command, options->method);
+  add_map_scene_option(*command, options->method);
   add_common_options(*command, common);
-  command->callback([options] { run_trace(*options); });
+  command->callback([options, &common] { run_trace(*options, common); });
 }
 
 }  // namespace probewalk

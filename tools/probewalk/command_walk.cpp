@@ -10,6 +10,7 @@
 
 #include "content/error.h"
 #include "tools/probewalk/commands.h"
+#include "tools/probewalk/method_options.h"
 #include "xr/latency/run_files.h"
 #include "xr/latency/summary_json.h"
 #include "xr/walk.h"
@@ -22,6 +23,7 @@ constexpr std::uint32_t kMaxEyeSide_px = 8192;
 
 struct WalkArguments {
   WalkOptions walk;
+  MethodOptions method;
   std::string eye_size;
   std::string path, record, report, pictures;
   std::uint64_t frames = 0;
@@ -96,7 +98,17 @@ void run_walk(WalkArguments arguments, const CommonOptions& common) {
   }
   walk_options.command = own_command_line();
 
+  walk_options.choice = chosen_tracer(arguments.method);
+  if (!arguments.method.scene.empty() && !walk_options.choice.needs_maps()) {
+    throw BadUsage(fmt::format("--scene is read for methods that need maps; method {} needs none", arguments.method.method));
+  }
   const std::unique_ptr<Progress> progress = make_progress(common);
+  std::unique_ptr<BaselineMaps> maps;
+  if (walk_options.choice.needs_maps()) {
+    maps = chosen_maps(walk_options.choice, arguments.method, Pack::open(walk_options.pack), std::nullopt, common.threads,
+                       *progress);
+    walk_options.maps = maps.get();
+  }
   const WalkResult result = walk(walk_options, *progress);
   if (common.json) {
     std::fputs(summary_json(result.ledger, result.info).c_str(), stdout);
@@ -165,6 +177,8 @@ void add_walk_command(CLI::App& app, CommonOptions& common) {
       ->capture_default_str();
   command->add_flag("--validate", walk_options.display.device.validation,
                     "Load the Vulkan validation layer; exit 1 when it has anything to say");
+  add_method_options(*command, arguments->method);
+  add_map_scene_option(*command, arguments->method);
   add_common_options(*command, common);
   command->callback([arguments, &common] { run_walk(*arguments, common); });
 }

@@ -9,24 +9,13 @@
 namespace probewalk {
 namespace {
 
-Scene load_as_baked(const std::filesystem::path& file, const Manifest& manifest, std::optional<double> scale,
-                    Progress& progress) {
-  SceneLoadOptions options;
-  options.scale = scale.value_or(manifest.scale);
-  options.recentre = manifest.light && manifest.light->recentred;
-  Scene scene = load_scene(file, options);
-  if (scene.content_hash != manifest.scene_hash) {
-    progress.note(fmt::format("{} is not the scene that the pack was baked from, or was loaded otherwise: the pictures "
-                              "may differ for that reason", file.string()));
-  }
-  if (!manifest.light) progress.note("the pack does not say how its light was sampled: the bake's defaults are taken");
-  return scene;
-}
-
-LightOptions light_as_baked(const Manifest& manifest, int threads) {
+LightOptions light_as_baked(const Manifest& manifest, int threads, Progress& progress) {
   LightOptions options;
   options.threads = threads;
-  if (!manifest.light) return options;
+  if (!manifest.light) {
+    progress.note("the pack does not say how its light was sampled: the bake's defaults are taken");
+    return options;
+  }
   options.samples = manifest.light->samples;
   options.bounces = manifest.light->bounces;
   options.cache_spacing_m = manifest.light->cache_spacing_m;
@@ -36,12 +25,25 @@ LightOptions light_as_baked(const Manifest& manifest, int threads) {
 
 }  // namespace
 
+Scene load_scene_as_baked(const std::filesystem::path& file, const Manifest& manifest, std::optional<double> scale,
+                          Progress& progress) {
+  SceneLoadOptions options;
+  options.scale = scale.value_or(manifest.scale);
+  options.recentre = manifest.light && manifest.light->recentred;
+  Scene scene = load_scene(file, options);
+  if (scene.content_hash != manifest.scene_hash) {
+    progress.note(fmt::format("{} is not the scene that the pack was baked from, or was loaded otherwise: the pictures "
+                              "may differ for that reason", file.string()));
+  }
+  return scene;
+}
+
 ReferenceCaster::ReferenceCaster(const std::filesystem::path& scene_file, const Manifest& manifest,
                                  std::optional<double> scale, int threads, Progress& progress)
     : progress_(progress),
-      scene_(load_as_baked(scene_file, manifest, scale, progress)),
+      scene_(load_scene_as_baked(scene_file, manifest, scale, progress)),
       rays_(scene_),
-      light_(scene_, rays_, light_as_baked(manifest, threads), progress) {}
+      light_(scene_, rays_, light_as_baked(manifest, threads, progress), progress) {}
 
 std::vector<ImageRgbF> ReferenceCaster::cast(const std::vector<ViewConstants>& views, int width_px,
                                              int height_px) const {

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <vector>
 
 #include "content/bake/light_field.h"
@@ -15,6 +16,10 @@
 
 namespace probewalk {
 
+// Loads a scene as the pack's bake did (`scale` overrides). Notes when it is not the one that was baked. Throws BadInput.
+Scene load_scene_as_baked(const std::filesystem::path& file, const Manifest& manifest, std::optional<double> scale,
+                          Progress& progress);
+
 class ReferenceCaster {
  public:
   // Loads the scene as the pack's bake did (`scale` overrides) and builds its light (long, once for all pictures). Notes
@@ -24,6 +29,7 @@ class ReferenceCaster {
 
   // One picture a view, in cd/m^2, rays through the pixels' centres. Throws Interrupted.
   std::vector<ImageRgbF> cast(const std::vector<ViewConstants>& views, int width_px, int height_px) const;
+  const RayScene& triangles() const { return rays_; }
 
  private:
   Progress& progress_;

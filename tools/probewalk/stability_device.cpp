@@ -4,7 +4,8 @@
 
 namespace probewalk {
 
-std::vector<stability::Answer> StabilityDevice::walk(const stability::Place& place, std::span<const stability::Ray> rays) {
+std::vector<stability::Answer> StabilityDevice::walk(const stability::Place& place,
+                                                     std::span<const stability::Ray> rays) {
   const std::string name = fmt::format("{} {}", place.name, place.geometry.n);
   if (place_ != name) {
     batch_.set_probe(place.device);

@@ -27,7 +27,9 @@ std::string grouped(std::uint64_t value) {
   return digits;
 }
 
-std::string error_text(double error) { return error > 0.0 ? fmt::format("{:.1e}", error) : "0"; }
+std::string error_text(double error) {
+  return error > 0.0 ? fmt::format("{:.1e}", error) : "0";
+}
 
 std::string zero_is_good(std::uint64_t count) {
   return fmt::format("<td{}>{}</td>", count > 0 ? " class=\"bad\"" : "", grouped(count));
@@ -41,8 +43,8 @@ std::string disagreements(const Comparison& comparison) {
     for (int b = 0; b < stability::kClasses; ++b) {
       const std::uint64_t count = comparison.by_class[static_cast<std::size_t>(a)][static_cast<std::size_t>(b)];
       if (count > 0) {
-        fmt::format_to(std::back_inserter(by_class), "{}{} → {}: {}", by_class.empty() ? "" : "; ", stability::class_name(a),
-                       stability::class_name(b), count);
+        fmt::format_to(std::back_inserter(by_class), "{}{} → {}: {}", by_class.empty() ? "" : "; ",
+                       stability::class_name(a), stability::class_name(b), count);
       }
     }
   }
@@ -55,10 +57,13 @@ std::string tally_cells(const CaseTally& tally) {
   std::string html = fmt::format("<td>{}</td>", grouped(tally.rays));
   html += zero_is_good(tally.not_finite) + zero_is_good(tally.endless) + zero_is_good(tally.hierarchical_differs);
   const double rays = static_cast<double>(std::max<std::uint64_t>(tally.rays, 1));
-  fmt::format_to(std::back_inserter(html), "<td>{:.1f}</td><td>{}</td>", static_cast<double>(tally.lookups) / rays, tally.lookups_max);
+  fmt::format_to(std::back_inserter(html), "<td>{:.1f}</td><td>{}</td>", static_cast<double>(tally.lookups) / rays,
+                 tally.lookups_max);
+  html += disagreements(tally.float_flat);
+  fmt::format_to(std::back_inserter(html), "<td>{}</td>", error_text(tally.float_flat.errors.percentile(0.99)));
   html += disagreements(tally.float_double);
-  fmt::format_to(std::back_inserter(html), "<td>{}</td><td>{}</td>", error_text(tally.float_double.errors.percentile(0.99)),
-                 error_text(tally.float_double.errors.max()));
+  fmt::format_to(std::back_inserter(html), "<td>{}</td><td>{}</td>",
+                 error_text(tally.float_double.errors.percentile(0.99)), error_text(tally.float_double.errors.max()));
   html += disagreements(tally.device_float);
   if (tally.device_rays > 0) {
     const std::uint64_t other = tally.device_rays - tally.device_same_bits;
@@ -68,32 +73,36 @@ std::string tally_cells(const CaseTally& tally) {
   }
   fmt::format_to(std::back_inserter(html), "<td>{}</td>", grouped(tally.float_brute.rays));
   html += disagreements(tally.float_brute) + disagreements(tally.double_brute);
-  fmt::format_to(std::back_inserter(html), "<td>{}</td><td>{}</td>", error_text(tally.float_brute.errors.percentile(0.99)),
-                 error_text(tally.float_brute.errors.max()));
+  fmt::format_to(std::back_inserter(html), "<td>{}</td><td>{}</td>",
+                 error_text(tally.float_brute.errors.percentile(0.99)), error_text(tally.float_brute.errors.max()));
   return html;
 }
 
 std::string table(const std::vector<CaseResult>& results) {
   std::string html =
       "<div class=\"scroll\"><table>\n<tr><th></th><th class=\"group\" colspan=\"6\">sound</th>"
-      "<th class=\"group\" colspan=\"3\">float against double</th><th class=\"group\" colspan=\"2\">device against float</th>"
+      "<th class=\"group\" colspan=\"2\">planes</th><th class=\"group\" colspan=\"3\">float against double</th><th "
+      "class=\"group\" colspan=\"2\">device against float</th>"
       "<th class=\"group\" colspan=\"5\">against brute force</th></tr>\n"
-      "<tr><th>case</th><th>rays</th><th>NaN</th><th>endless</th><th>pyramid changes</th><th>look-ups, mean</th><th>max</th>"
-      "<th>beyond ties</th><th>error p99</th><th>worst</th><th>beyond ties</th><th>other bits</th>"
+      "<tr><th>case</th><th>rays</th><th>NaN</th><th>endless</th><th>pyramid changes</th><th>look-ups, "
+      "mean</th><th>max</th>"
+      "<th>beyond ties</th><th>change p99</th><th>beyond ties</th><th>error p99</th><th>worst</th><th>beyond "
+      "ties</th><th>other bits</th>"
       "<th>rays</th><th>float beyond ties</th><th>double beyond ties</th><th>error p99</th><th>worst</th></tr>\n";
   std::string place;
   for (const CaseResult& result : results) {
     const std::string here = fmt::format("{}, {} cells a side", result.place, result.cells);
-    if (here != place) html += "<tr class=\"place\"><td colspan=\"17\">" + html_escaped(here) + "</td></tr>\n";
+    if (here != place) html += "<tr class=\"place\"><td colspan=\"19\">" + html_escaped(here) + "</td></tr>\n";
     place = here;
-    html += "<tr><td class=\"case\">" + html_escaped(result.hard.name) + "<span class=\"soft\">" + html_escaped(result.hard.says) +
-            "</span></td>" + tally_cells(result.tally) + "</tr>\n";
+    html += "<tr><td class=\"case\">" + html_escaped(result.hard.name) + "<span class=\"soft\">" +
+            html_escaped(result.hard.says) + "</span></td>" + tally_cells(result.tally) + "</tr>\n";
   }
   return html + "<tr class=\"place\"><td>all</td>" + tally_cells(totals(results)) + "</tr>\n</table></div>\n";
 }
 
 void tile(std::string& html, const std::string& value, const std::string& label, bool good) {
-  fmt::format_to(std::back_inserter(html), "<div class=\"tile {}\"><b>{}</b><span>{}</span></div>\n", good ? "good" : "bad", value, label);
+  fmt::format_to(std::back_inserter(html), "<div class=\"tile {}\"><b>{}</b><span>{}</span></div>\n",
+                 good ? "good" : "bad", value, label);
 }
 
 std::string tiles(const CaseTally& all) {
@@ -102,21 +111,26 @@ std::string tiles(const CaseTally& all) {
   tile(html, grouped(all.not_finite), "NaN or infinite", all.not_finite == 0);
   tile(html, grouped(all.endless), "endless walks", all.endless == 0);
   tile(html, grouped(all.hierarchical_differs), "changed by the pyramid", all.hierarchical_differs == 0);
-  tile(html, grouped(all.float_double.beyond_ties()), "float against double, beyond ties", all.float_double.beyond_ties() == 0);
-  tile(html, grouped(all.device_float.beyond_ties()), "device against float, beyond ties", all.device_float.beyond_ties() == 0);
-  tile(html, grouped(all.float_brute.beyond_ties()), "against brute force, beyond ties", all.float_brute.beyond_ties() == 0);
+  tile(html, grouped(all.float_double.beyond_ties()), "float against double, beyond ties",
+       all.float_double.beyond_ties() == 0);
+  tile(html, grouped(all.device_float.beyond_ties()), "device against float, beyond ties",
+       all.device_float.beyond_ties() == 0);
+  tile(html, grouped(all.float_brute.beyond_ties()), "against brute force, beyond ties",
+       all.float_brute.beyond_ties() == 0);
   return html + "</div>\n";
 }
 
 }  // namespace
 
 std::string stability_page(const stability::TrialInfo& info, const std::vector<CaseResult>& results) {
-  std::string html = "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>Hard cases of the tracer</title>\n"
-                     "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<style>";
+  std::string html =
+      "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>Hard cases of the tracer</title>\n"
+      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<style>";
   html += kReportStyle;
   html += kStyle;
   html += "</style></head>\n<body><main>\n<h1>Hard cases of the tracer</h1>\n";
-  html += "<p class=\"soft\">" + html_escaped(fmt::format("{} · {} · {:.0f} s", info.started_utc, info.build, info.seconds)) + "</p>\n";
+  html += "<p class=\"soft\">" +
+          html_escaped(fmt::format("{} · {} · {:.0f} s", info.started_utc, info.build, info.seconds)) + "</p>\n";
   html += tiles(totals(results));
   for (const std::string& sentence : summary(info, results)) html += "<p>" + html_escaped(sentence) + "</p>\n";
   const std::vector<std::string> failed = all_failures(results);
@@ -125,22 +139,30 @@ std::string stability_page(const stability::TrialInfo& info, const std::vector<C
     for (const std::string& line : failed) html += "<li>" + html_escaped(line) + "</li>";
     html += "</ul></div>\n";
   }
-  html += "<h2>Case by case</h2>\n"
-          "<p>“Beyond ties” counts rays whose class or distance (by more than 1 %) differs and that are no ties, of all that differ; "
-          "the classes are in the cell’s tip. Errors are relative distances of rays on whose class both agree. “Endless” means "
-          "more look-ups than lines of the grid times levels can cost. “Other bits” counts device answers that are not C++ "
-          "float’s to the last bit.</p>\n";
+  html +=
+      "<h2>Case by case</h2>\n"
+      "<p>“Beyond ties” counts rays whose class or distance (by more than 1 %) differs and that are no ties, of all "
+      "that differ; "
+      "the classes are in the cell’s tip. Errors are relative distances of rays on whose class both agree. “Endless” "
+      "means "
+      "more look-ups than lines of the grid times levels can cost. “Pyramid changes” counts answers that a "
+      "walk by pyramid has other bits of than cell by cell; “planes” compares with that walk when one plane may stand "
+      "for "
+      "many cells. “Other bits” counts device answers that are not C++ "
+      "float’s to the last bit.</p>\n";
   html += table(results);
   html += "<h2>Where and how</h2>\n<table>\n";
   const auto fact = [&](const char* name, const std::string& value) {
-    html += std::string("<tr><td class=\"soft\">") + name + "</td><td class=\"words\">" + html_escaped(value) + "</td></tr>\n";
+    html += std::string("<tr><td class=\"soft\">") + name + "</td><td class=\"words\">" + html_escaped(value) +
+            "</td></tr>\n";
   };
   fact("command", info.command);
   fact("device", info.device);
   fact("processor", info.cpu);
   fact("system", info.system);
   fact("build", info.build);
-  fact("beside the page", "results.json (all numbers, with the first ray of each kind that fails), results.csv (a line a case)");
+  fact("beside the page",
+       "results.json (all numbers, with the first ray of each kind that fails), results.csv (a line a case)");
   return html + "</table>\n</main></body></html>\n";
 }
 

@@ -7,6 +7,7 @@
 
 #include "content/error.h"
 #include "content/stream/room_streamer.h"
+#include "render/baseline_store.h"
 #include "render/readback.h"
 #include "shaders/shared/view_ray.h"
 
@@ -33,7 +34,7 @@ std::vector<float> along_axis(const std::vector<float>& distance_m, const ViewCo
 
 struct StillDrawer::Impl {
   Impl(const Pack& pack_in, const Device& device_in, VkExtent2D extent_px, std::uint32_t view_count,
-       std::uint32_t samples, Progress& progress_in)
+       std::uint32_t samples, Progress& progress_in, const TracerChoice& choice, const BaselineMaps* maps)
       : pack(pack_in),
         device(device_in),
         progress(progress_in),
@@ -41,8 +42,9 @@ struct StillDrawer::Impl {
         views(view_count),
         store(device, pack.manifest().grid, static_cast<std::uint32_t>(pack.manifest().probe_positions_m.size()),
               {.frame_slots = kFrameSlots}),
+        baselines(choice.needs_maps() && maps != nullptr ? std::make_unique<BaselineStore>(device, *maps, choice) : nullptr),
         picture(device, {kFormat, extent, views, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT}),
-        renderer(device, store, {{extent, views, true, samples}, kFormat}),
+        renderer(device, store, {{extent, views, true, samples, {choice, baselines.get()}}, kFormat}),
         source(pack.path()),
         streamer(
             pack.manifest(), source,
@@ -64,6 +66,7 @@ struct StillDrawer::Impl {
   const VkExtent2D extent;
   const std::uint32_t views;
   ProbeStore store;
+  const std::unique_ptr<BaselineStore> baselines;  // null: the method reads the pack alone
   Image picture;
   FrameRenderer renderer;
   FolderSource source;
@@ -71,8 +74,9 @@ struct StillDrawer::Impl {
 };
 
 StillDrawer::StillDrawer(const Pack& pack, const Device& device, VkExtent2D extent_px, std::uint32_t view_count,
-                         std::uint32_t samples, Progress& progress)
-    : impl_(std::make_unique<Impl>(pack, device, extent_px, view_count, samples, progress)) {}
+                         std::uint32_t samples, Progress& progress, const TracerChoice& choice,
+                         const BaselineMaps* maps)
+    : impl_(std::make_unique<Impl>(pack, device, extent_px, view_count, samples, progress, choice, maps)) {}
 
 StillDrawer::~StillDrawer() = default;
 

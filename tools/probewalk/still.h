@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "content/baseline/baseline_maps.h"
 #include "content/image/image.h"
 #include "content/pack/pack_io.h"
 #include "content/progress.h"
@@ -26,9 +27,11 @@ struct Still {
 // Keeps the pack's rooms on the device from one picture to the next.
 class StillDrawer {
  public:
-  // All must outlive the drawer. view_count eyes a picture, `samples` rays a pixel at edges (1, 2 or 4).
+  // All must outlive the drawer. view_count eyes a picture, `samples` rays a pixel at edges (1, 2 or 4). `maps`: of a
+  // choice that needs some; copied to the device at once.
   StillDrawer(const Pack& pack, const Device& device, VkExtent2D extent_px, std::uint32_t view_count,
-              std::uint32_t samples, Progress& progress);
+              std::uint32_t samples, Progress& progress, const TracerChoice& choice = {},
+              const BaselineMaps* maps = nullptr);
   ~StillDrawer();
   StillDrawer(const StillDrawer&) = delete;
   StillDrawer& operator=(const StillDrawer&) = delete;

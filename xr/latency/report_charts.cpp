@@ -7,46 +7,13 @@
 #include <iterator>
 #include <vector>
 
+#include "xr/latency/report_svg.h"
 #include "xr/latency/report_text.h"
 
 namespace probewalk {
 namespace {
 
-// A round step that cuts `range` into 3 to 8 parts.
-double nice_step(double range) {
-  const double rough = std::max(range, 1e-9) / 5.0;
-  const double power = std::pow(10.0, std::floor(std::log10(rough)));
-  for (const double factor : {1.0, 2.0, 5.0}) {
-    if (factor * power >= rough) return factor * power;
-  }
-  return 10.0 * power;
-}
-
 double ms(std::int64_t ns) { return static_cast<double>(ns) * 1e-6; }
-
-// A picture with a plot area inside it.
-struct Plot {
-  double width, height, left, right, top, bottom;
-  double x0() const { return left; }
-  double x1() const { return width - right; }
-  double y0() const { return height - bottom; }
-  double y1() const { return top; }
-};
-
-std::string open_svg(const Plot& plot, const std::string& label) {
-  return fmt::format("<svg viewBox=\"0 0 {} {}\" role=\"img\" aria-label=\"{}\">", plot.width, plot.height,
-                     html_escaped(label));
-}
-
-void line(std::string& svg, const char* kind, double x0, double y0, double x1, double y1) {
-  fmt::format_to(std::back_inserter(svg),
-                 "<line class=\"{}\" x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\"/>", kind, x0, y0, x1, y1);
-}
-
-void text(std::string& svg, const char* kind, double x, double y, const std::string& words) {
-  fmt::format_to(std::back_inserter(svg), "<text class=\"{}\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>", kind, x, y,
-                 html_escaped(words));
-}
 
 // One column of the timeline: one frame, or the worst of several.
 struct Column {
@@ -85,13 +52,13 @@ std::string step_path(const std::vector<Column>& columns, std::int64_t Column::*
   return path;
 }
 
-void draw_y_axis(std::string& svg, const Plot& plot, double max_ms, const auto& y_of_ms) {
+void draw_y_axis(std::string& svg, const SvgPlot& plot, double max_ms, const auto& y_of_ms) {
   const double step = nice_step(max_ms);
   for (double tick = 0.0; tick <= max_ms * 1.0001; tick += step) {
-    line(svg, "grid", plot.x0(), y_of_ms(tick), plot.x1(), y_of_ms(tick));
-    text(svg, "ylabel", plot.x0() - 6, y_of_ms(tick) + 4, fmt::format("{:g}", tick));
+    svg_line(svg, "grid", plot.x0(), y_of_ms(tick), plot.x1(), y_of_ms(tick));
+    svg_text(svg, "ylabel", plot.x0() - 6, y_of_ms(tick) + 4, fmt::format("{:g}", tick));
   }
-  text(svg, "unit", 4, plot.y1() - 6, "ms");
+  svg_text(svg, "unit", 4, plot.y1() - 6, "ms");
 }
 
 }  // namespace
@@ -114,11 +81,11 @@ ChartScale chart_scale(std::span<const Run> runs, std::span<const Summary> summa
 }
 
 std::string timeline_svg(const Ledger& ledger, const Summary& summary, const ChartScale& scale) {
-  const Plot plot{1100, 300, 48, 12, 24, 56};
+  const SvgPlot plot{1100, 300, 48, 12, 24, 56};
   std::string svg = open_svg(plot, "Timeline of the run");
   const std::vector<Column> columns = make_columns(ledger, 1000);
   if (columns.empty()) {
-    text(svg, "note", plot.x0(), plot.height / 2, "No frames.");
+    svg_text(svg, "note", plot.x0(), plot.height / 2, "No frames.");
     return svg + "</svg>";
   }
   const double max_ms = ms(scale.timeline_max_ns);
@@ -131,10 +98,9 @@ std::string timeline_svg(const Ledger& ledger, const Summary& summary, const Cha
   };
 
   if (const std::size_t warmup = ledger.first_counted(); warmup > 0) {
-    fmt::format_to(std::back_inserter(svg),
-                   "<rect class=\"warmup\" x=\"{:.1f}\" y=\"{}\" width=\"{:.1f}\" height=\"{}\"/>", plot.x0(),
-                   plot.y1(), x_of_frame(warmup) - plot.x0(), plot.y0() - plot.y1());
-    text(svg, "warmuplabel", plot.x0() + 4, plot.y1() - 6, fmt::format("{} warm-up frames, left out", warmup));
+    fmt::format_to(std::back_inserter(svg), "<rect class=\"warmup\" x=\"{:.1f}\" y=\"{}\" width=\"{:.1f}\" height=\"{}\"/>",
+                   plot.x0(), plot.y1(), x_of_frame(warmup) - plot.x0(), plot.y0() - plot.y1());
+    svg_text(svg, "warmuplabel", plot.x0() + 4, plot.y1() - 6, fmt::format("{} warm-up frames, left out", warmup));
   }
   draw_y_axis(svg, plot, max_ms, y_of_ms);
   const std::string frame_path = step_path(columns, &Column::frame, plot.x0(), dx, y_of);
@@ -147,8 +113,8 @@ std::string timeline_svg(const Ledger& ledger, const Summary& summary, const Cha
                  step_path(columns, &Column::cpu, plot.x0(), dx, y_of));
   if (summary.period_ns > 0) {
     const double y = y_of(summary.period_ns);
-    line(svg, "budget", plot.x0(), y, plot.x1(), y);
-    text(svg, "budgetlabel", plot.x1() - 4, y - 5, "budget " + in_ms(summary.period_ns) + " ms");
+    svg_line(svg, "budget", plot.x0(), y, plot.x1(), y);
+    svg_text(svg, "budgetlabel", plot.x1() - 4, y - 5, "budget " + in_ms(summary.period_ns) + " ms");
   }
 
   // Below the axis: a mark for each column with missed (upper) or discarded (lower) frames. Above: clipped ones.
@@ -167,9 +133,9 @@ std::string timeline_svg(const Ledger& ledger, const Summary& summary, const Cha
   }
   const double frame_step = std::max(1.0, nice_step(static_cast<double>(frames.size())));
   for (double f = 0.0; f < static_cast<double>(frames.size()); f += frame_step) {
-    text(svg, "xlabel", x_of_frame(static_cast<std::size_t>(f)), plot.y0() + 34, fmt::format("{:g}", f));
+    svg_text(svg, "xlabel", x_of_frame(static_cast<std::size_t>(f)), plot.y0() + 34, fmt::format("{:g}", f));
   }
-  text(svg, "xlabel", (plot.x0() + plot.x1()) / 2, plot.y0() + 50, "frame");
+  svg_text(svg, "xlabel", (plot.x0() + plot.x1()) / 2, plot.y0() + 50, "frame");
 
   // What a pointer over a column tells.
   for (std::size_t c = 0; c < columns.size(); ++c) {
@@ -190,11 +156,11 @@ std::string timeline_svg(const Ledger& ledger, const Summary& summary, const Cha
 }
 
 std::string histogram_svg(const QuantitySummary& quantity, std::int64_t period_ns, const ChartScale& scale) {
-  const Plot plot{360, 200, 40, 10, 34, 36};
+  const SvgPlot plot{360, 200, 40, 10, 34, 36};
   std::string svg = open_svg(plot, "Histogram of " + quantity.name);
-  text(svg, "title", plot.x0(), 14, fmt::format("{}  (n = {})", quantity.name, quantity.histogram.count()));
+  svg_text(svg, "title", plot.x0(), 14, fmt::format("{}  (n = {})", quantity.name, quantity.histogram.count()));
   if (quantity.histogram.count() == 0) {
-    text(svg, "note", plot.x0(), plot.height / 2, "not measured here");
+    svg_text(svg, "note", plot.x0(), plot.height / 2, "not measured here");
     return svg + "</svg>";
   }
   constexpr std::size_t kBins = 64;
@@ -221,8 +187,8 @@ std::string histogram_svg(const QuantitySummary& quantity, std::int64_t period_n
   const double top = std::log10(1.0 + std::max(10.0, *std::ranges::max_element(bins)));
   const auto y_of = [&](double count) { return plot.y0() - (plot.y0() - plot.y1()) * std::log10(1.0 + count) / top; };
   for (double count = 1.0; std::log10(1.0 + count) <= top; count *= 10.0) {
-    line(svg, "grid", plot.x0(), y_of(count), plot.x1(), y_of(count));
-    text(svg, "ylabel", plot.x0() - 5, y_of(count) + 4, fmt::format("{:g}", count));
+    svg_line(svg, "grid", plot.x0(), y_of(count), plot.x1(), y_of(count));
+    svg_text(svg, "ylabel", plot.x0() - 5, y_of(count) + 4, fmt::format("{:g}", count));
   }
   const double dx = (plot.x1() - plot.x0()) / static_cast<double>(kBins);
   for (std::size_t b = 0; b < kBins; ++b) {
@@ -237,19 +203,19 @@ std::string histogram_svg(const QuantitySummary& quantity, std::int64_t period_n
   }
   const double max_ms = ms(scale.histogram_max_ns);
   const auto x_of_ms = [&](double v) { return plot.x0() + (plot.x1() - plot.x0()) * std::clamp(v / max_ms, 0.0, 1.0); };
-  line(svg, "axis", plot.x0(), plot.y0(), plot.x1(), plot.y0());
+  svg_line(svg, "axis", plot.x0(), plot.y0(), plot.x1(), plot.y0());
   for (double tick = 0.0; tick <= max_ms * 1.0001; tick += nice_step(max_ms)) {
-    text(svg, "xlabel", x_of_ms(tick), plot.y0() + 14, fmt::format("{:g}", tick));
+    svg_text(svg, "xlabel", x_of_ms(tick), plot.y0() + 14, fmt::format("{:g}", tick));
   }
-  text(svg, "xlabel", (plot.x0() + plot.x1()) / 2, plot.y0() + 29, "ms");
+  svg_text(svg, "xlabel", (plot.x0() + plot.x1()) / 2, plot.y0() + 29, "ms");
   if (period_ns > 0 && period_ns <= scale.histogram_max_ns) {
-    line(svg, "budget", x_of_ms(ms(period_ns)), plot.y0(), x_of_ms(ms(period_ns)), plot.y1());
+    svg_line(svg, "budget", x_of_ms(ms(period_ns)), plot.y0(), x_of_ms(ms(period_ns)), plot.y1());
   }
   const auto percentile_mark = [&](double p, const char* label, double y) {
     const auto value = quantity.histogram.percentile(p);
-    line(svg, "pmark", x_of_ms(ms(*value)), plot.y0(), x_of_ms(ms(*value)), y);
+    svg_line(svg, "pmark", x_of_ms(ms(*value)), plot.y0(), x_of_ms(ms(*value)), y);
     const bool leftwards = x_of_ms(ms(*value)) > plot.x1() - 90;
-    text(svg, leftwards ? "plabel left" : "plabel", x_of_ms(ms(*value)) + (leftwards ? -4 : 4), y + 8,
+    svg_text(svg, leftwards ? "plabel left" : "plabel", x_of_ms(ms(*value)) + (leftwards ? -4 : 4), y + 8,
          fmt::format("{} {} ms", label, in_ms(*value)));
   };
   percentile_mark(0.5, "p50", plot.y1() - 6);

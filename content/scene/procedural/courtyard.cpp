@@ -144,7 +144,7 @@ Model make_courtyard() {
   ModelLight sun;
   sun.name = "Sun", sun.kind = ModelLight::Kind::kDirectional;
   sun.direction = glm::normalize(glm::dvec3(0.42, -0.85, 0.36)), sun.color = {1.0f, 0.93f, 0.80f},
-  sun.intensity = 2200.0;
+  sun.intensity = 1800.0;
   model.lights.push_back(sun);
   model.sky = {{80.0f, 140.0f, 280.0f}, {280.0f, 320.0f, 370.0f}, {110.0f, 112.0f, 95.0f}};
   using namespace courtyard;

@@ -59,7 +59,7 @@ Model make_fractal(int level) {
   const PlainColours c = add_plain_colours(model);
   const glm::dvec3 lower_m{-3.2, 0, -3.2}, upper_m{3.2, 3.2, 3.2};
   draw_plain_room(Brush(model, "Room"), c, lower_m, upper_m);
-  Brush(model, "Plinth").box(c.wall, {-1.4, -0.01, -1.4}, {1.4, 0.1, 1.4});
+  Brush(model, "Plinth").box(c.wall, {-1.55, -0.01, -1.55}, {1.55, 0.1, 1.55});
   draw_sponge(Brush(model, "Sponge").at({0, 0.1, 0}, 12.0),
               {add_plain(model, "sponge side", 0xD9A45B), add_plain(model, "sponge top", 0xE9D9B5),
                add_plain(model, "sponge front", 0xB5673F)},

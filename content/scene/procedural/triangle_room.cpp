@@ -190,7 +190,7 @@ void add_ornament(Room& room, MaterialId curtain, MaterialId stucco) {
     const double petals = 0.5 + 0.5 * std::cos(8.0 * angle) * std::sin(kTurn_rad * 1.5 * r);
     const double rim = std::clamp((1.0 - std::max(std::abs(q.x), std::abs(q.y))) / 0.06, 0.0, 1.0);
     const glm::dvec3 p{kUpper_m.x - 0.02, 1.6 + 0.6 * q.y, 0.6 * q.x};
-    return p - glm::dvec3(rim * (0.02 + 0.035 * petals * std::exp(-1.5 * r * r) + relief_m(2.0 * p)), 0, 0);
+    return p - glm::dvec3(rim * (0.02 + 0.05 * petals * std::exp(-0.9 * r * r) + relief_m(2.0 * p)), 0, 0);
   });
   room.sheet("Curtain", curtain, {3.0, 2.5}, {12, 1}, [](double u, double v) {
     const glm::dvec3 p{kLower_m.x + 0.15 + 0.05 * std::sin(kTurn_rad * 6.0 * u), 0.1 + 2.6 * v,

@@ -3,6 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <sstream>
 
 #include "content/bake/placement.h"
 #include "content/bake/placement/probe_sites.h"
@@ -155,6 +159,36 @@ TEST(ThesisScenes, TheHolodeckIsSeenFromItsMiddle) {
     hidden += !figure.sees(middle, there);
   }
   EXPECT_LE(hidden, 20);  // trims stand 5 mm proud of their walls
+}
+
+// tools/views/NAME.txt: NAME x,y,z,yaw,pitch of each view of a scene.
+TEST(ThesisScenes, NamedViewsStandInFreeAir) {
+  const std::map<std::string, std::string> whole_names{{"fractal", "fractal-3"},
+                                                       {"triangles", "triangles-1e4"}};
+  int views = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(PROBEWALK_SOURCE_DIR "/tools/views")) {
+    const std::string stem = entry.path().stem().string();
+    const auto whole = whole_names.find(stem);
+    const Figure figure(whole != whole_names.end() ? whole->second : stem);
+    std::ifstream file(entry.path());
+    for (std::string line; std::getline(file, line);) {
+      if (line.empty() || line.front() == '#') continue;
+      std::replace(line.begin(), line.end(), ',', ' ');
+      std::istringstream words(line);
+      std::string name;
+      double yaw = 0.0, pitch = 0.0;
+      glm::dvec3 eye;
+      ASSERT_TRUE(words >> name >> eye.x >> eye.y >> eye.z >> yaw >> pitch) << entry.path() << ": " << line;
+      EXPECT_GT(clearance_m(figure.rays(), eye, 1.0), 0.1) << stem << ' ' << name;
+      // Something is to be seen: the middle of the view is not right before the eye.
+      const double turn = glm::radians(yaw), rise = glm::radians(pitch);
+      const glm::vec3 ahead(-std::sin(turn) * std::cos(rise), std::sin(rise),
+                            -std::cos(turn) * std::cos(rise));
+      EXPECT_FALSE(figure.rays().occluded(glm::vec3(eye), ahead, 0.0f, 0.4f)) << stem << ' ' << name;
+      ++views;
+    }
+  }
+  EXPECT_GE(views, 30);
 }
 
 TEST(ThesisScenes, AFractalHasTheFacesOfItsLevel) {

@@ -126,14 +126,15 @@ class Room {
     const TraceConstants dials = default_dials(pack.manifest().radiance_scale);
     const float spread_rad = kFov_rad / static_cast<float>(options.height_px);
     oat.run = [this, dials, spread_rad](std::span<float> t_m) {
-      const auto [answers, device_ns] = batch_->trace_timed(*store_, dials, world_rays_, spread_rad);
+      const TracedRays traced = batch_->trace_timed(*store_, dials, world_rays_, spread_rad);
+      const std::vector<BatchAnswer>& answers = traced.answers;
       double lookups = 0.0;
       for (std::size_t i = 0; i < answers.size(); ++i) {
         t_m[i] = answers[i].t_m;
         lookups += answers[i].lookups;
       }
       contenders_.front().lookups_mean = lookups / static_cast<double>(answers.size());
-      return device_ns;
+      return traced.device_ns;
     };
     contenders_.push_back(std::move(oat));
   }
