@@ -93,7 +93,7 @@ glm::vec3 relative_to(const ProbeRecord& probe, glm::dvec3 point_m) {
 }
 
 void stop_if_asked(const Progress& progress) {
-  if (progress.cancelled()) throw Interrupted("interrupted while counting look-ups; the figures so far are kept");
+  if (progress.cancelled()) throw Interrupted("interrupted while counting look-ups; no figure was written");
 }
 
 }  // namespace
