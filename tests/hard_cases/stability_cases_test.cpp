@@ -59,10 +59,11 @@ TEST(HardCases, HoldOnTheDeviceAndInFloatAndInDouble) {
     if (!result.hard.hostile) {
       EXPECT_GE(result.tally.float_brute.rays, kLeastRays) << result.hard.name;
     }
-    // Where nothing is torn or degenerate, rays have answers, and few are ties.
+    // Where nothing is torn or degenerate, rays have answers, and few are ties. Among leaves most begin behind one.
     if (result.hard.name == "random" && result.cells == 128) {
       EXPECT_LT(result.tally.float_brute.ties, result.tally.rays / 100) << result.place;
-      EXPECT_GT(result.tally.classes[kClassHit], result.tally.rays / 4) << result.place;
+      EXPECT_GT(result.tally.classes[kClassHit] + result.tally.classes[kClassBehind], result.tally.rays / 4)
+          << result.place;
     }
   }
 }
@@ -102,10 +103,12 @@ TEST(HardCases, ARayStraightAwayFromAProbeTakesOneLookupAndIsExact) {
       ASSERT_EQ(answer.lookups, 1u);
       if (answer.cls != kClassHit) continue;
       ++hits;
-      // The distance that the map's plane has in that direction.
+      // The distance that the map's plane has in that direction; what the plane's own rounding makes of it grows as the
+      // ray grazes the plane.
       const glm::dvec3 x = exact_origin(place->record, ray), d(ray.direction);
       const double exact = (1.0 - glm::dot(answer.plane, x)) / glm::dot(answer.plane, d);
-      ASSERT_NEAR(answer.t, exact, 2e-6 * (exact + glm::length(x)));
+      const double grazing = glm::length(answer.plane) / std::abs(glm::dot(answer.plane, d));
+      ASSERT_NEAR(answer.t, exact, 2e-6 * grazing * (exact + glm::length(x)));
     }
     EXPECT_GT(hits, 5000) << place->name;
   }
