@@ -34,7 +34,7 @@ const Room& room() {
       throw std::runtime_error(read_text(r.folder / "stderr"));
     }
     const RunResult bake = run_probewalk(r.folder, {"bake", r.scene.string(), "-o", r.pack.string(), "--resolution", "128",
-                                                    "--radiance-resolution", "32", "--max-probes", "8", "--samples", "4", "-q"});
+                                                    "--radiance-resolution", "32", "--max-probes", "8", "--samples", "8", "-q"});
     if (bake.exit_code != 0) throw std::runtime_error(bake.err);
     return r;
   }();
