@@ -33,6 +33,7 @@ TEST(Stability, WritesPageRowsAndSummary) {
   ASSERT_EQ(r.exit_code, 0) << r.err;
   EXPECT_EQ(r.out, "");
   EXPECT_THAT(r.err, HasSubstr("Every check holds."));
+  EXPECT_THAT(r.err, HasSubstr("hard cases\n"));
 
   const nlohmann::json json = nlohmann::json::parse(read_text(out / "results.json"));
   EXPECT_EQ(json["passed"], true);
