@@ -96,9 +96,9 @@ TEST(LookupStudy, OneProbeAnswersByEveryMethodInAConvexRoom) {
   EXPECT_LT(nodes, 0.6 * flat);
   // The first look from another level changes what it costs and not what is answered.
   for (const StudyRay& ray : rays) {
-    const Walk usual = probe.walk(choice_of("oat"), ray), coarse = probe.walk(choice_of("oat"), ray, 2);
+    const Walk usual = probe.walk(choice_of("oat"), ray), coarse = probe.walk(choice_of("oat"), ray, 1);
     ASSERT_EQ(usual.cls, coarse.cls);
-    ASSERT_EQ(usual.t_m, coarse.t_m);
+    ASSERT_NEAR(usual.t_m, coarse.t_m, 1e-4 * usual.t_m);  // a plane may stand for its cells
   }
 }
 

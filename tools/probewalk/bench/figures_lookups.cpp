@@ -113,20 +113,17 @@ Figure resolution_figure(const StudyScene& room, const FigureOptions& options, P
       "lookups-resolution",
       "Look-ups against resolution",
       {fmt::format(
-           "One probe in a plain room of 4 by 2.6 by 4 m with a block in it, {} rays from points that the probe sees, "
-           "in all "
-           "directions alike; each method's walk alone, without selection. r is the number of texels, side times side. "
-           "Dashed: growth as the thesis predicts it; it gives no constants, so one factor a curve is fitted.",
+           "One probe in a plain room of 4 by 2.6 by 4 m with a block in it, {} rays from points that the probe "
+           "sees, in all directions alike; each method's walk alone, without selection. r is the number of texels, "
+           "side times side. Dashed: growth as the thesis predicts it; it gives no constants, so one factor a curve "
+           "is fitted.",
            rays.size()),
        "Texel by texel the number grows with the side, as predicted (exponent 1). By nodes of a pyramid it grows by "
-       "the "
-       "logarithm, as 9.1 says of the worst case, if the coarsest nodes grow with the map: march-2d-hierarchical's are "
-       "the "
-       "side over 16. Two-level's are 16 texels and the product's too (start level 4), so on large maps these are "
-       "crossed "
-       "one by one; the black curve is the product when it first looks at nodes of the side over 16. Steps in space do "
-       "not "
-       "know the resolution, and are without bound: their number is the ray's length over the step."},
+       "the logarithm, as 9.1 says of the worst case, if the coarsest nodes grow with the map: "
+       "march-2d-hierarchical's are the side over 16. Two-level's are 16 texels and the product's 32 cells wide, so "
+       "on large maps these are crossed one by one; the black curve is the product when it first looks at nodes of "
+       "the side over 16. Steps in space do not know the resolution, and are without bound: their number is the "
+       "ray's length over the step."},
       {line_plot_svg(plot)},
       table + "</table>"};
 }
@@ -194,20 +191,16 @@ Figure angle_figure(const StudyScene& room, const FigureOptions& options, Progre
       "lookups-angle",
       "Look-ups against the angle between ray and displacement",
       {fmt::format("The same room, {} rays. At 0 degrees the ray runs straight away from the probe: it stays in one "
-                   "texel, one look-up "
-                   "is exact (4.3). At 180 it runs towards the probe and past it. The grey line is no fit: a ray "
-                   "sweeps at most the "
-                   "angle drawn, and that many texels at most lie on its way.",
+                   "texel, one look-up is exact (4.3). At 180 it runs towards the probe and past it. The grey line "
+                   "is no fit: a ray sweeps at most the angle drawn, and that many texels at most lie on its way.",
                    rays.size()),
        fmt::format(
-           "Texel by texel the number is proportional to the angle that the ray really sweeps before it hits something "
-           "(dashed, one fitted factor, {:.2f} a texel's side): {:.0f} look-ups at 5 degrees, {:.0f} at 175. For a "
-           "trace by nodes "
-           "the thesis's log r (1 + angle) is drawn, with one fitted factor each: march-2d-hierarchical takes {:.1f} "
-           "to "
-           "{:.1f}, the product {:.1f} to {:.1f}. The product passes what lies inside the empty octahedron around a "
-           "probe "
-           "without a look, so rays right past the probe, the thesis's worst case, are among its cheap ones.",
+           "Texel by texel the number is proportional to the angle that the ray really sweeps before it hits "
+           "something (dashed, one fitted factor, {:.2f} a texel's side): {:.0f} look-ups at 5 degrees, {:.0f} at "
+           "175. For a trace by nodes the thesis's log r (1 + angle) is drawn, with one fitted factor each: "
+           "march-2d-hierarchical takes {:.1f} to {:.1f}, the product {:.1f} to {:.1f}. The product passes what lies "
+           "inside the empty octahedron around a probe without a look, so rays right past the probe, the thesis's "
+           "worst case, are among its cheap ones.",
            swept_factor / side, means[1].front(), means[1].back(), means[2].front(),
            *std::max_element(means[2].begin(), means[2].end()), means[5].front(),
            *std::max_element(means[5].begin(), means[5].end()))},
@@ -222,8 +215,8 @@ Figure probes_figure(const StudyScene& room, const FigureOptions& options, Progr
   std::array<std::vector<glm::dvec2>, 3> by_cell, by_best;
   std::vector<double> ticks;
   std::string table =
-      "<table><tr><th>probes</th><th>angle to the probe that answers, of the cell, degrees</th>"
-      "<th>of all</th><th>march-2d, of the cell</th><th>of all</th><th>rays of one look-up, of all</th></tr>";
+      "<table><tr><th>probes</th><th>angle to the probe that answers, of the cell, degrees</th><th>of "
+      "all</th><th>march-2d, of the cell</th><th>of all</th><th>rays of one look-up, of all</th></tr>";
   for (int per_axis = 1; per_axis <= options.most_per_axis; ++per_axis) {
     const ProbeLattice lattice = lattice_in(room, per_axis);
     const std::vector<StudyRay> rays = rays_seen_by(room, lattice.positions_m, options.rays / 2);
@@ -256,17 +249,19 @@ Figure probes_figure(const StudyScene& room, const FigureOptions& options, Progr
   return {
       "lookups-probes",
       "Look-ups against the number of probes",
-      {"Regular grids of 1 to 8 probes along an axis in the same room. Solid: the first probe is, of all that see the "
-       "ray's "
-       "origin, the one that the ray runs most nearly straight away from, which is what 9.1 supposes. Dashed with "
-       "dots: the "
-       "best of the eight of the origin's cell, which is what the thesis's algorithm does (5.5), by the signed cosine.",
-       "With the best of all, the angle falls with every probe that is added and with it the number of look-ups: "
-       "towards one, "
-       "as the thesis says. With the best of the cell it does not: a denser grid is the same cell made smaller, so the "
-       "angle "
-       "stays what it was. What a trace by nodes still gains there is that the ray leaves the probe's "
-       "surroundings, and the angle with it, within a smaller part of the empty space around the probe."},
+      {fmt::format(
+           "Regular grids of 1 to {} probes along an axis in the same room. Solid: the first probe is, of all that "
+           "see the ray's origin, the one that the ray runs most nearly straight away from, which is what 9.1 "
+           "supposes. Dashed with dots: the best of the eight of the origin's cell, which is what the thesis's "
+           "algorithm does (5.5), by the signed cosine.",
+           options.most_per_axis),
+       fmt::format(
+           "With the best of all, the angle falls with every probe that is added, and with it the number of look-ups "
+           "towards one, as the thesis says, if slowly: texel by texel {:.0f} with {:g} probe, {:.0f} with {:g}. "
+           "With the best of the cell it does not go on falling ({:.0f}): a denser grid is the same cell made "
+           "smaller, so the angle settles. What a trace by nodes still gains there is that the ray sweeps it within "
+           "a smaller part of the empty space around the probe.",
+           by_best[0].front().y, by_best[0].front().x, by_best[0].back().y, by_best[0].back().x, by_cell[0].back().y)},
       {line_plot_svg(plot)},
       table + "</table>"};
 }
@@ -322,22 +317,22 @@ Figure failures_figure(const std::filesystem::path& scratch, const FigureOptions
   Curve product{fmt::format("thesis: k times {:.0f}", first), {}, kGrey, true, false};
   for (int k = 1; k <= 8; ++k) product.points.emplace_back(k, k * first);
   costs.curves.push_back(product);
-  return {"failures",
-          "Partial failures per ray",
-          {fmt::format(
-               "Grids of 3 by 3 by 3 probes in three scenes, {} rays each. A ray is walked through one probe after the "
-               "other until one "
-               "answers: a walk that ends where the probe's knowledge does is a partial failure, k in 9.1. Solid: the "
-               "product. Dashed: the thesis's march by nodes with its own selection (eight probes of the origin's "
-               "cell, corner "
-               "+ 3 mod 8).",
-               options.rays),
-           "The thesis bounds the number of look-ups by the number of probes times that of one walk (grey, with the "
-           "mean of the first "
-           "walks). A walk that fails has ended early, and the next one goes on from there, so less than the product "
-           "is paid."},
-          {line_plot_svg(shares), line_plot_svg(costs)},
-          table + "</table>"};
+  return {
+      "failures",
+      "Partial failures per ray",
+      {fmt::format(
+           "Grids of 3 by 3 by 3 probes in three scenes, {} rays each. A ray is walked through one probe after the "
+           "other until one answers: a walk that ends where the probe's knowledge does is a partial failure, k in "
+           "9.1. Solid: the product. Dashed: the thesis's march by nodes with its own selection (eight probes of the "
+           "origin's cell, corner + 3 mod 8).",
+           options.rays),
+       "The thesis bounds the number of look-ups by the number of probes times that of one walk (grey, with the mean "
+       "of the first walks). The march by nodes stays below: a walk that fails has ended early, and the next one "
+       "goes on from there. The product lies above: rays that fail run among thin things, where its walks go down "
+       "to the cells, and every further probe is first tested for whether it sees the point reached. It fails less "
+       "often for that, and leaves fewer rays without an answer (table)."},
+      {line_plot_svg(shares), line_plot_svg(costs)},
+      table + "</table>"};
 }
 
 }  // namespace

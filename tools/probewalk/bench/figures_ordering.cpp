@@ -115,18 +115,15 @@ Figure square_figure() {
       "ordering-square",
       "Which probe first: the square (figure 6.1)",
       {"Four probes stand at the corners of a square of 2 by 2; a ray starts at the black dot. The colour at a place "
-       "of "
-       "the square is that of the probe which a ray in the direction from the square's centre to that place asks first "
-       "(so it depends on the angle alone). First row: the thesis's figure 6.1, by the unsigned cosine between ray "
-       "and displacement. The lower two rows show the whole order: the inmost square is the first probe, the outer "
-       "frame "
-       "the last.",
+       "of the square is that of the probe which a ray in the direction from the square's centre to that place asks "
+       "first (so it depends on the angle alone). First row: the thesis's figure 6.1, by the unsigned cosine between "
+       "ray and displacement. The lower two rows show the whole order: the inmost square is the first probe, the "
+       "outer frame the last.",
        "By the unsigned cosine opposite directions share their probe: half of the rays run towards it. By the signed "
-       "one "
-       "they run away from it, and each probe serves one sector. The nearest does not care for the direction at all "
-       "(from the middle all are as near; any may be first). "
-       "Signed less distance is what the tracer uses: the cosine less the distance over the cell's diagonal, with "
-       "corners beyond the cell's middle faded out, so that walking into the next cell swaps no probe."},
+       "one they run away from it, and each probe serves one sector. The nearest does not care for the direction at "
+       "all (from the middle all are as near; any may be first). Signed less distance is what the tracer uses: the "
+       "cosine less the distance over the cell's diagonal, with corners beyond the cell's middle faded out, so that "
+       "walking into the next cell swaps no probe."},
       {svg + "</svg>"},
       ""};
 }
@@ -213,8 +210,8 @@ Figure cube_first_figure(const CubeOrdering& cube) {
   }
   draw_cube_legend(svg, kLeft + kColumn * kRules.size() + 10, kTop);
   std::string table =
-      "<table><tr><th>ray from</th><th>rule</th><th>mean cosine to the first probe</th>"
-      "<th>largest share of directions of one probe</th></tr>";
+      "<table><tr><th>ray from</th><th>rule</th><th>mean cosine to the first probe</th><th>largest share of "
+      "directions of one probe</th></tr>";
   for (std::size_t row = 0; row < kCubeOrigins.size(); ++row) {
     const glm::dvec3 origin = kCubeOrigins[row];
     const double top = kTop + kRow * static_cast<double>(row);
@@ -235,14 +232,13 @@ Figure cube_first_figure(const CubeOrdering& cube) {
   return {
       "ordering-cube-first",
       "Which probe first: the cube",
-      {"Eight probes stand at the corners of a cube of 1 m (right: their numbers and colours, x to the right, y up, z "
-       "towards the reader). Each oval is the whole sphere of directions in equal areas (Mollweide; the middle is +z, "
-       "up is +y, the right half +x), coloured by the probe that a ray in that direction asks first.",
+      {"Eight probes stand at the corners of a cube of 1 m (right: their numbers and colours, x to the right, y up, "
+       "z towards the reader). Each oval is the whole sphere of directions in equal areas (Mollweide; the middle is "
+       "+z, up is +y, the right half +x), coloured by the probe that a ray in that direction asks first.",
        "By either cosine the border between two probes is a plane through the ray's origin, as the thesis supposes: "
-       "the "
-       "directions that make the same angle with both displacements (unsigned: two planes). By the signed cosine each "
-       "probe has one region, around the direction straight away from it; by the unsigned one also the opposite. From "
-       "the middle, opposite corners tie there, and rounding decides."},
+       "the directions that make the same angle with both displacements (unsigned: two planes). By the signed cosine "
+       "each probe has one region, around the direction straight away from it; by the unsigned one also the "
+       "opposite. From the middle, opposite corners tie there, and rounding decides."},
       {svg + "</svg>"},
       table + "</table>"};
 }
@@ -272,9 +268,8 @@ Figure cube_next_figure(const CubeOrdering& cube) {
   }
   draw_cube_legend(svg, kLeft + kColumn * kColumns.size() + 10, kTop);
   std::string table =
-      "<table><tr><th>ray from</th><th>order</th><th>different orders</th>"
-      "<th>mean angle between first and second probe, degrees</th>"
-      "<th>mean number of coordinates changed by a step</th></tr>";
+      "<table><tr><th>ray from</th><th>order</th><th>different orders</th><th>mean angle between first and second "
+      "probe, degrees</th><th>mean number of coordinates changed by a step</th></tr>";
   for (std::size_t row = 0; row < kCubeOrigins.size(); ++row) {
     const glm::dvec3 origin = kCubeOrigins[row];
     const double top = kTop + kRow * static_cast<double>(row);
@@ -304,19 +299,13 @@ Figure cube_next_figure(const CubeOrdering& cube) {
   return {"ordering-cube-next",
           "Which probe next: the cube",
           {"The same directions when the first probe (by the signed cosine) has failed, coloured by the second one: "
-           "corner + 3 "
-           "mod 8 (5.5), the order with the greatest sum of exclusive ors, and the one with the next best cosine. Last "
-           "column: "
-           "a colour for every whole order that the sort gives. For the two fixed orders the first probe decides "
-           "everything, "
-           "so there are as many orders as there are first probes.",
+           "corner + 3 mod 8 (5.5), the order with the greatest sum of exclusive ors, and the one with the next best "
+           "cosine. Last column: a colour for every whole order that the sort gives. For the two fixed orders the "
+           "first probe decides everything, so there are as many orders as there are first probes.",
            "Sorted, the second probe looks from nearly where the first did: the angle between them, seen from the "
-           "ray's origin, "
-           "is the smallest of the three (table). That is the thesis's reason for an order that mixes. Corner + 3 mod "
-           "8 is not "
-           "the one that mixes most, though it is said to be: its exclusive ors sum to 40 around the circle; the order "
-           "used "
-           "for the second column reaches 50."},
+           "ray's origin, is the smallest of the three (table). That is the thesis's reason for an order that mixes. "
+           "Corner + 3 mod 8 is not the one that mixes most, though it is said to be: its exclusive ors sum to 40 "
+           "around the circle; the order used for the second column reaches 50."},
           {svg + "</svg>"},
           table + "</table>"};
 }
