@@ -328,10 +328,9 @@ Figure failures_figure(const std::filesystem::path& scratch, const FigureOptions
            options.rays),
        "The thesis bounds the number of look-ups by the number of probes times that of one walk (grey, with the mean "
        "of the first walks). The march by nodes stays below: a walk that fails has ended early, and the next one "
-       "goes on from there. Where the product lies above, it is because the rays that fail are those among thin "
-       "things, where its walk descends to cells that it cannot decide, and because every further probe is first "
-       "tested for whether it sees the point reached. It fails less often for that, and leaves fewer rays without an "
-       "answer (table)."},
+       "goes on from there. The product lies above: rays that fail run among thin things, where its walks go down "
+       "to the cells, and every further probe is first tested for whether it sees the point reached. It fails less "
+       "often for that, and leaves fewer rays without an answer (table)."},
       {line_plot_svg(shares), line_plot_svg(costs)},
       table + "</table>"};
 }
