@@ -12,8 +12,9 @@ namespace probewalk::stability {
 inline constexpr double kSmallest = 1e-3;
 // Answers of one class whose distances differ by less, relative, are the same answer.
 inline constexpr double kSameDistance = 1e-2;
-// How far beside the ray, in units of the place and of the direction, an answer still counts as a tie. Floats know a
-// point of a room to 2e-7, and the records' 16-bit slopes move a surface by up to 1.5e-6.
+// How far beside the ray, in units of the place (or of a tenth of the origin's distance, where that is more) and of the
+// direction, an answer still counts as a tie. Floats know a point of a room to 2e-7, and the records' 16-bit slopes move
+// a surface by up to 1.5e-6.
 inline constexpr double kTie = 2e-6;
 
 // Relative; `scale_m` is the place's size.
