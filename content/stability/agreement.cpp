@@ -19,19 +19,22 @@ bool same_answer(const Answer& answer, const Answer& reference, double scale_m) 
 bool is_tie(const Reference& reference, glm::dvec3 x, glm::dvec3 d, const Answer& answer, double scale_m, double tie) {
   // A float's place is as uncertain as it is far away: beyond ten times the place's size that is what counts.
   const double reach = tie * std::max(scale_m, 0.1 * glm::length(x)), speed = glm::length(d);
-  const auto gives_it_beside = [&](int count) {
-    for (int k = 0; k < count; ++k) {
-      // Over a few distances, so that slivers thinner than the tie are met, too.
-      const double share = std::exp2(-((k / 32) % 4));
-      const glm::dvec3 moved = x + share * reach * hammersley_direction(k, count);
-      const glm::dvec3 turned = d + share * tie * speed * hammersley_direction((k * 13) % count, count);
-      if (same_answer(answer, reference(moved, turned), scale_m)) return true;
-    }
-    return false;
-  };
   constexpr int kBeside = 32;
-  // Few rays need the closer look.
-  if (gives_it_beside(kBeside) || gives_it_beside(64 * kBeside)) return true;
+  for (int k = 0; k < kBeside; ++k) {
+    const glm::dvec3 moved = x + reach * hammersley_direction(k, kBeside);
+    const glm::dvec3 turned = d + tie * speed * hammersley_direction((k * 13) % kBeside, kBeside);
+    if (same_answer(answer, reference(moved, turned), scale_m)) return true;
+  }
+  // Few rays need the closer look, at all distances: along a line of the grid the other answer may take one ray in a
+  // thousand of those beside. Much nearer than floats resolve there is nothing to be found.
+  constexpr int kCloser = 1 << 15;
+  constexpr double kResolved = 1e-8;
+  Random random(1);
+  for (int k = 0; k < kCloser && tie > kResolved; ++k) {
+    const glm::dvec3 moved = x + reach * random() * random.direction();
+    const glm::dvec3 turned = d + tie * speed * random() * random.direction();
+    if (same_answer(answer, reference(moved, turned), scale_m)) return true;
+  }
   if (answer.cls == kClassMiss) return false;
   // From one side of the ray to the other in small steps: does the distance run through the contender's without a jump?
   for (int k = 0; k < kBeside; ++k) {
