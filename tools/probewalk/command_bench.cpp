@@ -36,7 +36,7 @@ constexpr int kMaxSide_px = 4096;
 
 struct BenchArguments {
   BenchOptions options;
-  std::string size = "160x120", picture_size = "320x240";
+  std::string size = "160x120", picture_size = "480x360";
   bool no_pictures = false, no_variants = false;
 };
 

@@ -18,7 +18,7 @@ struct BenchOptions {
   int views = 6;
   int width_px = 160, height_px = 120;   // of a view, for times and hit errors
   double fov_deg = 75.0;                 // vertical
-  int picture_width_px = 320, picture_height_px = 240;
+  int picture_width_px = 480, picture_height_px = 360;
   double pixels_per_degree = 20.0;       // of the pictures, as a headset shows them
   bool pictures = true;
   bool variants = true;                  // the product's other settings, and each acceleration alone

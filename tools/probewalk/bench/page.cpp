@@ -80,7 +80,7 @@ std::string row_cells(const BenchRow& row) {
   return html;
 }
 
-// A row a method: the product's default, of the others the size nearest to the product's.
+// A row a method: the product's default, of the others the first, which by default is of the product's resolution.
 std::string methods_table(const SceneReport& report) {
   const BenchRow* product = report.default_row();
   std::string html = std::string("<div class=\"scroll\"><table><tr><th>method</th><th class=\"words\">settings</th>") +

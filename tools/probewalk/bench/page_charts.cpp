@@ -36,8 +36,8 @@ std::optional<double> error_of(const BenchRow& row, ErrorKind kind) {
 
 const char* error_name(ErrorKind kind) {
   switch (kind) {
-    case ErrorKind::kMedian: return "median distance error (relative)";
-    case ErrorKind::kFailed: return "wrong + hole (share of all rays)";
+    case ErrorKind::kMedian: return "median distance error";
+    case ErrorKind::kFailed: return "wrong + hole";
     case ErrorKind::kFlip: return "FLIP";
   }
   return "";
@@ -63,7 +63,9 @@ struct LogAxis {
   }
 };
 
-LogAxis log_axis(const std::vector<double>& values, double from, double to, bool round_to_decades) {
+// Ends at `most` at the latest.
+LogAxis log_axis(const std::vector<double>& values, double from, double to, bool round_to_decades,
+                 double most = std::numeric_limits<double>::max()) {
   LogAxis axis;
   double low = std::numeric_limits<double>::max(), high = 0.0;
   for (const double value : values) {
@@ -78,6 +80,7 @@ LogAxis log_axis(const std::vector<double>& values, double from, double to, bool
   const double step = round_to_decades ? 1.0 : 1.0 / 3.0;  // else to 1, 2, 5 or nearly so
   axis.low = std::pow(10.0, std::floor((std::log10(low) - 0.04) / step) * step);
   axis.high = std::pow(10.0, std::ceil((std::log10(high) + 0.04) / step) * step);
+  if (high <= most) axis.high = std::min(axis.high, std::max(most, 2.0 * axis.low));
   axis.zero_at = from;
   axis.from = axis.has_zero ? from + 0.09 * (to - from) : from;
   axis.to = to;
@@ -139,7 +142,7 @@ void draw_names(std::string& svg, const SvgPlot& plot, const std::vector<Point>&
     named[point.row->method] = true;
     const std::string& name = point.row->method;
     const double width = 5.6 * static_cast<double>(name.size());
-    for (int attempt = 0; attempt < 16; ++attempt) {
+    for (int attempt = 0; attempt < 10; ++attempt) {
       const bool left = (attempt % 2 == 1) != (point.x + 9 + width > plot.x1());
       const double y = point.y + 4 + 11.0 * ((attempt / 2 + 1) / 2) * ((attempt / 2) % 2 == 0 ? 1 : -1);
       const double x = left ? point.x - 9 - width : point.x + 9;
@@ -176,7 +179,7 @@ std::string pareto_svg(const std::vector<BenchRow>& rows, Cost cost, ErrorKind k
   const char* cost_name = cost == Cost::kTime ? "ns a ray" : "look-ups a ray";
   std::string svg = open_svg(plot, fmt::format("{} against {}", cost_name, error_name(kind)));
   svg_text(svg, "title", 10, 17, fmt::format("{} against {}", cost_name, error_name(kind)));
-  const LogAxis x = log_axis(errors, plot.x0(), plot.x1(), true), y = log_axis(costs, plot.y0(), plot.y1(), false);
+  const LogAxis x = log_axis(errors, plot.x0(), plot.x1(), true, 1.0), y = log_axis(costs, plot.y0(), plot.y1(), false);
   draw_ticks(svg, plot, x, y);
   svg_text(svg, "xlabel", (plot.x0() + plot.x1()) / 2, plot.height - 8, "smaller error to the left, cheaper further down");
 
@@ -246,7 +249,7 @@ const char* const kBenchStyle = R"css(
   --m2d: #3f55c8; --m2h: #7a4fc0; --restart: #b84fa6; --two: #c3262f; }
 @media (prefers-color-scheme: dark) { :root { --oat: #ff8a4c; --flat: #c98d68; --env: #9aa0a7; --sphere: #cdbb62; --box: #9dbb66;
   --impostor: #5cc7b3; --m3d: #6cb0f5; --m2d: #8594ff; --m2h: #b48cf0; --restart: #e58ad5; --two: #ff6b70; } }
-main { max-width: 1320px; }
+main { max-width: 1320px; } td { white-space: nowrap; } td.words { white-space: normal; }
 .charts.pareto { grid-template-columns: repeat(auto-fit, minmax(350px, 1fr)); }
 .m-oat { --c: var(--oat); } .m-oat-flat { --c: var(--flat); } .m-environment { --c: var(--env); }
 .m-sphere-proxy { --c: var(--sphere); } .m-box-proxy { --c: var(--box); } .m-impostor { --c: var(--impostor); }

@@ -15,6 +15,7 @@ constexpr const char* kNothing = "–";
 constexpr double kSameTime = 0.05;
 
 std::string times(double factor) {
+  if (factor >= 999.5) return "over 1000 times";
   return factor >= 9.5 ? fmt::format("{:.0f} times", factor) : fmt::format("{:.1f} times", factor);
 }
 
@@ -68,8 +69,10 @@ std::string beside_product(const BenchRow& row, const BenchRow& product) {
   const auto failed = failed_fraction(row), product_failed = failed_fraction(product);
   std::string errors = error_words("wrong + hole", failed, product_failed);
   const std::string median = error_words("median error", row.hit_error_p50, product.hit_error_p50);
-  if (!errors.empty() && !median.empty()) errors += ", ";
-  errors += median;
+  for (const std::string& more : {median, error_words("FLIP", row.flip_mean, product.flip_mean)}) {
+    if (!errors.empty() && !more.empty()) errors += ", ";
+    errors += more;
+  }
   if (errors.empty()) return words;
   // A faster one that errs more is no gain, and is told so.
   const bool faster = *row.time_ratio < 1.0 - kSameTime;
@@ -111,9 +114,13 @@ std::string scene_in_words(const SceneReport& report) {
   }
   const auto equal = equal_errors(report.rows);
   if (const auto best = best_march(equal, EqualBy::kFailed)) {
-    text += fmt::format(" Where both are equally often wrong ({}), oat is {:.2f} times as fast as the best march, {}{}.",
-                        share_text(best->error), best->speed_ratio, best->march,
-                        best->reached ? "" : ", which gets no better than that with its largest maps");
+    if (best->reached) {
+      text += fmt::format(" The march that gets as good at least cost, {}, takes {:.2f} times as long as oat where both are equally often "
+                          "wrong or without an answer ({}).", best->march, best->speed_ratio, share_text(best->error));
+    } else {
+      text += fmt::format(" No march measured is as seldom wrong or without an answer as oat. At the best of {} ({}), the settings of oat "
+                          "that are at least as good take {:.2f} of its time.", best->march, share_text(best->error), 1.0 / best->speed_ratio);
+    }
   }
   for (std::size_t k = 0; k < report.triangles_times.size(); ++k) {
     const TrianglesTime& t = report.triangles_times[k];

@@ -153,7 +153,8 @@ void SceneBench::measure_pictures(BenchRow& row, Contender& contender) {
   row.psnr_db = error.psnr_db;
   row.pixels_per_degree = density_of(picture_rays_.size);
   row.worst_view = poses_[error.worst].name;
-  if (!pictured_.insert(row.method).second) return;
+  // oat-flat's pictures are oat's own.
+  if (row.method == "oat-flat" || !pictured_.insert(row.method).second) return;
 
   WorstPicture worst{row.method, row.settings, row.worst_view, error.flip[error.worst], {}, {}, {}};
   const fs::path folder = options_.output / "pictures";
@@ -188,7 +189,7 @@ void SceneBench::run_group(const Group& group, const PackLevel& level) {
   if (!own) contenders.push_back(make_probe_contender(device_, *finest_, nullptr, dials_, choice_of("oat")));
   const std::string stage = group.maps > 0 ? fmt::format("{}: {}, maps {}", report_.name, group.settings.front().method, group.maps)
                                            : fmt::format("{}: resolution {}", report_.name, sizes_[group.level]);
-  progress_.begin(stage + ", errors", group.settings.size(), "settings");
+  progress_.begin(stage + ", errors", group.settings.size() * rays_.rays.size(), "rays");
   const std::size_t first = measured_.size();
   for (const Setting& setting : group.settings) {
     check();
@@ -210,13 +211,13 @@ void SceneBench::run_group(const Group& group, const PackLevel& level) {
     measure_pictures(row, contender);
     if (group.maps > 0) measured.answers.clear();
     measured_.push_back(std::move(measured));
-    progress_.advance(1);
+    progress_.advance(rays_.rays.size());
   }
 
   std::vector<Contender*> runners;
   for (const auto& contender : contenders) runners.push_back(contender.get());
   if (!own) runners.front()->trace(rays_);
-  progress_.begin(stage + ", times", runners.size() * static_cast<std::size_t>(options_.repeats), "runs");
+  progress_.begin(stage + ", times", runners.size() * static_cast<std::size_t>(options_.repeats) * rays_.rays.size(), "rays");
   const std::vector<Timing> timings = time_side_by_side(runners, rays_, options_.repeats, progress_);
   for (std::size_t k = 0; k < group.settings.size(); ++k) {
     Measured& measured = measured_[first + k];

@@ -13,7 +13,7 @@ std::vector<Timing> time_side_by_side(std::span<Contender* const> contenders, co
       if (progress.cancelled()) throw Interrupted("interrupted while measuring times; nothing was written");
       const std::size_t k = (step + static_cast<std::size_t>(repeat)) % contenders.size();
       round[k] = static_cast<double>(contenders[k]->trace(rays).device_ns) / static_cast<double>(rays.rays.size());
-      progress.advance(1);
+      progress.advance(rays.rays.size());
     }
     for (std::size_t k = 0; k < contenders.size(); ++k) {
       timings[k].ns_per_ray.push_back(round[k]);
