@@ -102,13 +102,11 @@ Figure resolution_figure(const StudyScene& room, const FigureOptions& options, P
   plot.curves.push_back({kRaised, curve_of(raised, 1.0), kBlack});
   table += row_of(kRaised, raised);
   const double flat_factor = fitted_factor(flat, means[1]);
-  const double nodes_factor = fitted_factor(hierarchical, means[2]), oat_factor = fitted_factor(hierarchical, raised);
+  const double nodes_factor = fitted_factor(hierarchical, means[2]);
   plot.curves.push_back(
       {fmt::format("thesis: sqrt r, times {:.3f}", flat_factor), curve_of(flat, flat_factor), kVermilion, true, false});
   plot.curves.push_back({fmt::format("thesis: log r, times {:.2f}", 0.5 * nodes_factor),
                          curve_of(hierarchical, nodes_factor), kPurple, true, false});
-  plot.curves.push_back(
-      {fmt::format("log r, times {:.2f}", 0.5 * oat_factor), curve_of(hierarchical, oat_factor), kBlack, true, false});
   return {
       "lookups-resolution",
       "Look-ups against resolution",
@@ -121,9 +119,10 @@ Figure resolution_figure(const StudyScene& room, const FigureOptions& options, P
        "Texel by texel the number grows with the side, as predicted (exponent 1). By nodes of a pyramid it grows by "
        "the logarithm, as 9.1 says of the worst case, if the coarsest nodes grow with the map: "
        "march-2d-hierarchical's are the side over 16. Two-level's are 16 texels and the product's 32 cells wide, so "
-       "on large maps these are crossed one by one; the black curve is the product when it first looks at nodes of "
-       "the side over 16. Steps in space do not know the resolution, and are without bound: their number is the "
-       "ray's length over the step."},
+       "on the largest maps these are crossed one by one; the black curve is the product when it first looks at "
+       "nodes of the side over 16. It hardly grows: walls are met as planes of whole nodes, which a finer map only "
+       "makes wider. Steps in space do not know the resolution, and are without bound: their number is the ray's "
+       "length over the step."},
       {line_plot_svg(plot)},
       table + "</table>"};
 }
@@ -310,13 +309,21 @@ Figure failures_figure(const std::filesystem::path& scratch, const FigureOptions
                            place.words, method, tries, count.lookups_mean, 100 * count.unknown_share);
     }
   }
-  // k probes, each as dear as the first: the thesis's product, from the middle of the first points.
-  double first = 0.0;
-  for (const Curve& curve : costs.curves)
-    first += curve.points.empty() ? 0.0 : curve.points.front().y / static_cast<double>(costs.curves.size());
-  Curve product{fmt::format("thesis: k times {:.0f}", first), {}, kGrey, true, false};
-  for (int k = 1; k <= 8; ++k) product.points.emplace_back(k, k * first);
-  costs.curves.push_back(product);
+  // k probes, each as dear as the first: the thesis's product, from the mean of a method's first points.
+  for (std::size_t method = 0; method < kMethods.size(); ++method) {
+    double first = 0.0;
+    for (std::size_t k = method; k < costs.curves.size() && k < kMethods.size() * kPlaces.size();
+         k += kMethods.size()) {
+      if (!costs.curves[k].points.empty()) first += costs.curves[k].points.front().y / kPlaces.size();
+    }
+    Curve product{fmt::format("thesis: k times {:.1f} ({})", first, kMethods[method]),
+                  {},
+                  method == 0 ? kGrey : kBlack,
+                  true,
+                  false};
+    for (int k = 1; k <= 8; ++k) product.points.emplace_back(k, k * first);
+    costs.curves.push_back(product);
+  }
   return {
       "failures",
       "Partial failures per ray",
@@ -326,11 +333,12 @@ Figure failures_figure(const std::filesystem::path& scratch, const FigureOptions
            "9.1. Solid: the product. Dashed: the thesis's march by nodes with its own selection (eight probes of the "
            "origin's cell, corner + 3 mod 8).",
            options.rays),
-       "The thesis bounds the number of look-ups by the number of probes times that of one walk (grey, with the mean "
-       "of the first walks). The march by nodes stays below: a walk that fails has ended early, and the next one "
-       "goes on from there. The product lies above: rays that fail run among thin things, where its walks go down "
-       "to the cells, and every further probe is first tested for whether it sees the point reached. It fails less "
-       "often for that, and leaves fewer rays without an answer (table)."},
+       "The thesis bounds the number of look-ups by the number of probes times that of one walk (straight lines, "
+       "with the mean of each method's first walks). The march by nodes is near its line for the first failures and "
+       "falls below it: a walk that fails has ended early, and the next one goes on from there. The product is above "
+       "its line: most rays meet a wall that is one plane and are done after a few looks, but rays that fail run "
+       "among thin things, where its walks go down to the cells, and every further probe is first tested for whether "
+       "it sees the point reached. It fails less often for that, and leaves fewer rays without an answer (table)."},
       {line_plot_svg(shares), line_plot_svg(costs)},
       table + "</table>"};
 }
