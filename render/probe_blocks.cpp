@@ -1,7 +1,9 @@
 #include "render/probe_blocks.h"
 
 #include <algorithm>
-#include <cstring>
+#include <cstddef>
+#include <ranges>
+#include <span>
 #include <utility>
 
 #include "render/check.h"
@@ -51,7 +53,7 @@ ProbeBlocks::ProbeBlocks(const Device& device, const std::vector<DeviceProbe>& p
     const Buffer& written = is_staged ? staged_.back().words : blocks_.back();
     std::uint64_t offset = 0;
     const auto append = [&](const std::vector<std::uint32_t>& words) {
-      std::memcpy(written.mapped() + offset, words.data(), words.size() * sizeof(std::uint32_t));
+      std::ranges::copy(std::as_bytes(std::span(words)), written.mapped() + offset);  // of none, too
       return blocks_.back().address() + std::exchange(offset, offset + device_block_bytes(words));
     };
     for (std::size_t i = first; i < end; ++i) {
