@@ -12,6 +12,7 @@
 #include "render/check.h"
 #include "render/depth_pass.h"
 #include "render/resolve.h"
+#include "render/view.h"
 
 namespace probewalk {
 namespace {
@@ -256,6 +257,7 @@ void FrameRenderer::write(std::span<const ViewConstants> views, const FrameSetti
   constants.near_m = settings.depth.near_m;
   constants.far_m = settings.depth.far_m;
   std::copy(views.begin(), views.end(), constants.view);
+  share_choice({constants.view, views.size()});
   const Buffer& buffer = impl.slot().constants;
   std::memcpy(buffer.mapped(), &constants, sizeof(constants));
   buffer.flush();

@@ -24,4 +24,13 @@ ViewFov symmetric_fov(double vertical_rad, int width_px, int height_px) {
   return {-right, right, up, -up};
 }
 
+void share_choice(std::span<ViewConstants> views) {
+  if (views.size() != 2) return;
+  const glm::vec3 across = (views[1].origin_hi_m - views[0].origin_hi_m) + (views[1].origin_lo_m - views[0].origin_lo_m);
+  for (int eye = 0; eye < 2; ++eye) {
+    const float along_m = glm::dot(across, glm::vec3(views[eye].world_from_eye_x));
+    views[eye].choice_shift_m = eye == 0 ? 0.5f * along_m : -0.5f * along_m;
+  }
+}
+
 }  // namespace probewalk

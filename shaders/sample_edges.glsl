@@ -41,7 +41,7 @@ void add_ray(FrameConstants constants, ViewConstants view, vec2 point_px, float 
              inout uvec3 counts) {
   vec3 direction = view_ray_through(view, point_px, constants.size_px);
   RayAnswer answer = pipeline_trace(constants.baseline_address, constants.grid, constants.trace, view.origin_hi_m,
-                                    view.origin_lo_m, direction);
+                                    view.origin_lo_m, direction, choice_shift(view));
   uint reads;
   vec3 radiance = pipeline_radiance(constants.grid, constants.trace, answer, view.origin_hi_m, view.origin_lo_m,
                                     direction, view.pixel_angle_rad, reads);

@@ -35,7 +35,7 @@ void main() {
   TraceConstants dials = frame.constants.trace;
   vec3 direction = view_ray(view, pixel, size_px);
   RayAnswer answer = pipeline_trace(frame.constants.baseline_address, grid, dials, view.origin_hi_m, view.origin_lo_m,
-                                    direction);
+                                    direction, choice_shift(view));
   uint reads;
   vec3 radiance = pipeline_radiance(grid, dials, answer, view.origin_hi_m, view.origin_lo_m, direction,
                                     view.pixel_angle_rad, reads);

@@ -33,7 +33,8 @@ SelectionRules rules_of_sources(int first, int order) {
           .retry = 0,
           .start_test = 0,
           .hand_on = 1,
-          .last_resort = kLastResortEnvironment};
+          .last_resort = kLastResortEnvironment,
+          .choice_shift_m = {}};
 }
 
 SelectionRules rules_of(int method) {

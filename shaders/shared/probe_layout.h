@@ -92,7 +92,7 @@ struct ViewConstants {
   pw_vec3 origin_hi_m;
   float pixel_angle_rad;  // angular width of the centre pixel
   pw_vec3 origin_lo_m;
-  float reserved0;
+  float choice_shift_m;  // along the eye's x axis to where its rays' probes are chosen (SelectionRules): the head's middle
   pw_vec4 world_from_eye_x;  // columns of the rotation
   pw_vec4 world_from_eye_y;
   pw_vec4 world_from_eye_z;

@@ -36,6 +36,9 @@ struct SelectionRules {
   pw_int hand_on;      // 1: a probe goes on from where the last one's knowledge ended (algorithm 5); 0: every probe starts
                        // at the ray's origin (algorithm 4), and none is asked twice
   pw_int last_resort;  // kLastResort...
+  // Probes are chosen as for a ray from its origin moved by this. A head's two eyes choose as its middle would: what both
+  // see then comes from one probe more often.
+  pw_vec3 choice_shift_m;
 };
 
 // What the product traces with (design: fewer-tries, 1).
@@ -48,6 +51,7 @@ PW_FUNCTION SelectionRules default_rules() {
   rules.start_test = 1;
   rules.hand_on = 1;
   rules.last_resort = kLastResortStopPoint;
+  rules.choice_shift_m = pw_vec3(0.0f);
   return rules;
 }
 

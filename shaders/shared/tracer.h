@@ -178,6 +178,7 @@ PW_FUNCTION RayAnswer trace_ray(PW_WALK_PARAMETER GridConstants grid, TraceConst
   answer.tries = 0u;
   answer.plane = real3(0);
 
+  const real3 chosen_from = origin_hi + real3(rules.choice_shift_m);
   int failed_probe[PW_TRIES_LIMIT];
   real failed_t[PW_TRIES_LIMIT];
   int failures = 0;
@@ -190,7 +191,7 @@ PW_FUNCTION RayAnswer trace_ray(PW_WALK_PARAMETER GridConstants grid, TraceConst
   // Every turn either walks, of which there are max_tries, or moves to the next of four stages.
   while (int(answer.tries) < max_tries && stage < 4) {
     real t_cell = stage == 3 ? real(0) : t + real(stage) * ahead;
-    CandidateList list = cell_candidates(grid, dials, rules, origin_hi + d * t_cell, d);
+    CandidateList list = cell_candidates(grid, dials, rules, chosen_from + d * t_cell, d);
     int chosen = -1, doubtful = -1;
     for (int k = 0; k < list.count && chosen < 0; ++k) {
       int id = list.probe[k];
@@ -234,7 +235,7 @@ PW_FUNCTION RayAnswer trace_ray(PW_WALK_PARAMETER GridConstants grid, TraceConst
   // Nobody knows: the ray is free up to t. The probe whose surface lies nearest to the stop point lends its radiance.
   answer.t = t;
   if (rules.last_resort == kLastResortNothing) return answer;
-  CandidateList list = cell_candidates(grid, dials, rules, origin_hi + d * t, d);
+  CandidateList list = cell_candidates(grid, dials, rules, chosen_from + d * t, d);
   real best = PW_NEVER, nearest = PW_NEVER;
   int environment = -1, open = -1;
   for (int k = 0; k < list.count; ++k) {

@@ -48,7 +48,8 @@ layout(constant_id = 9) const int kRuleStartTest = 1;
 layout(constant_id = 10) const int kRuleHandOn = 1;
 layout(constant_id = 11) const int kRuleLastResort = kLastResortStopPoint;
 
-SelectionRules pipeline_rules() {
+// choice_shift_m: see SelectionRules.
+SelectionRules pipeline_rules(vec3 choice_shift_m) {
   SelectionRules rules;
   rules.first = kRuleFirst;
   rules.order = kRuleOrder;
@@ -57,6 +58,7 @@ SelectionRules pipeline_rules() {
   rules.start_test = kRuleStartTest;
   rules.hand_on = kRuleHandOn;
   rules.last_resort = kRuleLastResort;
+  rules.choice_shift_m = choice_shift_m;
   return rules;
 }
 
@@ -68,7 +70,7 @@ layout(constant_id = 14) const int kBaselineRejectBackfaces = 0;
 layout(constant_id = 15) const int kBaselineBackwardTrace = 0;
 
 RayAnswer pipeline_trace(uvec2 baseline_address, GridConstants grid, TraceConstants dials, vec3 origin_hi,
-                         vec3 origin_lo, vec3 direction) {
+                         vec3 origin_lo, vec3 direction, vec3 choice_shift_m) {
   BaselineContext context;
   context.method = kBaselineMethod;
   context.epsilon_rule = kBaselineEpsilonRule;
@@ -76,7 +78,7 @@ RayAnswer pipeline_trace(uvec2 baseline_address, GridConstants grid, TraceConsta
   context.backward_trace = kBaselineBackwardTrace;
   // An environment map needs no constants, and may be given none.
   if (kBaselineMethod != kMethodEnvironment) context.constants = PwBaselineDials(baseline_address).v;
-  return trace_ray(context, grid, dials, pipeline_rules(), origin_hi, origin_lo, direction, kPipelineStartLevel);
+  return trace_ray(context, grid, dials, pipeline_rules(choice_shift_m), origin_hi, origin_lo, direction, kPipelineStartLevel);
 }
 
 vec3 pipeline_radiance(GridConstants grid, TraceConstants dials, RayAnswer answer, vec3 origin_hi, vec3 origin_lo,
@@ -85,8 +87,8 @@ vec3 pipeline_radiance(GridConstants grid, TraceConstants dials, RayAnswer answe
 }
 #else
 RayAnswer pipeline_trace(uvec2 baseline_address, GridConstants grid, TraceConstants dials, vec3 origin_hi,
-                         vec3 origin_lo, vec3 direction) {
-  return trace_ray(grid, dials, pipeline_rules(), origin_hi, origin_lo, direction, kPipelineStartLevel);
+                         vec3 origin_lo, vec3 direction, vec3 choice_shift_m) {
+  return trace_ray(grid, dials, pipeline_rules(choice_shift_m), origin_hi, origin_lo, direction, kPipelineStartLevel);
 }
 
 vec3 pipeline_radiance(GridConstants grid, TraceConstants dials, RayAnswer answer, vec3 origin_hi, vec3 origin_lo,

@@ -42,6 +42,11 @@ PW_FUNCTION pw_vec3 view_ray_through(ViewConstants view, pw_vec2 point_px, pw_iv
                  (view.world_from_eye_x.z * x + view.world_from_eye_y.z * y - view.world_from_eye_z.z) * scale);
 }
 
+// From the eye to where its rays' probes are chosen.
+PW_FUNCTION pw_vec3 choice_shift(ViewConstants view) {
+  return pw_vec3(view.world_from_eye_x.x, view.world_from_eye_x.y, view.world_from_eye_x.z) * view.choice_shift_m;
+}
+
 // Unit direction through the centre of pixel (x, y), row 0 at the top.
 PW_FUNCTION pw_vec3 view_ray(ViewConstants view, pw_ivec2 pixel, pw_ivec2 size_px) {
   return view_ray_through(view, pixel_centre(pixel), size_px);

@@ -82,8 +82,9 @@ TEST_F(FrameRendererTest, TracesEveryPixelOfEveryViewAsTheCppTracer) {
   for (const std::uint32_t count : {1u, 2u, 4u}) {
     FrameRenderer renderer(device, store, options(count));
     const Image image = make_target(count);
-    const auto views = views_at({0.3, 1.5, 0.9}, count);
+    auto views = views_at({0.3, 1.5, 0.9}, count);
     draw(renderer, image, views);
+    share_choice(views);
     const auto distances = read_floats(device, renderer.tracer().distance());
     const auto aov = read_uints(device, renderer.tracer().aov());
     const ProbeSet set = room.on_cpu();
@@ -92,7 +93,9 @@ TEST_F(FrameRendererTest, TracesEveryPixelOfEveryViewAsTheCppTracer) {
       for (int y = 0; y < static_cast<int>(kExtent.height); ++y) {
         for (int x = 0; x < static_cast<int>(kExtent.width); ++x) {
           const glm::vec3 d = view_ray(views[view], {x, y}, {kExtent.width, kExtent.height});
-          const auto expected = f32::trace_ray(set.grid(), settings.trace, views[view].origin_hi_m,
+          SelectionRules rules = default_rules();
+          rules.choice_shift_m = choice_shift(views[view]);
+          const auto expected = f32::trace_ray(set.grid(), settings.trace, rules, views[view].origin_hi_m,
                                                views[view].origin_lo_m, d, kStartLevel);
           const std::size_t at = static_cast<std::size_t>(y) * kExtent.width + static_cast<std::size_t>(x);
           differ += distances[view][at] != expected.t || aov[view][at].x != static_cast<unsigned>(expected.cls) ||
