@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "content/bake/bake_estimate.h"
-#include "content/bake/bake_probe.h"
 #include "content/bake/bake_state.h"
 #include "content/bake/exposure.h"
+#include "content/bake/map_store.h"
 #include "content/bake/plan_picture.h"
 #include "content/error.h"
 #include "content/pack/pack_format.h"
@@ -96,7 +96,9 @@ class BakeJob {
     const Exposure exposure = choose_exposure(light, tour_);
     manifest_.radiance_scale = exposure.radiance_scale;
     manifest_.exposure_ev = exposure.exposure_ev;
-    bake_rooms(light, state, wanted);
+    MapStore maps(rays_, light, static_cast<float>(manifest_.radiance_scale), state);
+    bake_rooms(maps, state, wanted);
+    report_.rays += maps.rays_cast();
     report_.rays += light.rays_cast();
     report_.seconds = seconds_since(start);
     report_.rooms = manifest_.rooms.size();
@@ -206,7 +208,7 @@ class BakeJob {
                                static_cast<double>(estimate.bytes_disk) / (1 << 20)));
   }
 
-  void bake_rooms(const LightField& light, const BakeState& state, const std::vector<bool>& wanted) {
+  void bake_rooms(MapStore& maps, const BakeState& state, const std::vector<bool>& wanted) {
     PackWriter writer(options_.pack);
     std::uint64_t texels = 0;
     for (const LevelSize& size : levels_) texels += probes_in(wanted) * size.radiance * size.radiance;
@@ -214,10 +216,12 @@ class BakeJob {
     for (std::size_t k = 0; k < manifest_.rooms.size(); ++k) {
       RoomEntry& room = manifest_.rooms[k];
       if (!wanted[k] || room.probe_count == 0) continue;
-      for (const LevelSize& size : levels_) room.levels.push_back(bake_level(light, state, room, size, writer));
+      for (const LevelSize& size : levels_) room.levels.push_back(bake_level(maps, room, size, writer));
     }
     report_.texels = done_texels_;
-    if (baked_texels_ > 0) report_.seconds_per_million_texels = baking_seconds_ * 1e6 / static_cast<double>(baked_texels_);
+    if (maps.baked_texels() > 0) {
+      report_.seconds_per_million_texels = maps.baking_seconds() * 1e6 / static_cast<double>(maps.baked_texels());
+    }
     if (all_cells_ > 0) report_.connected_fraction = 1.0 - static_cast<double>(cut_cells_) / static_cast<double>(all_cells_);
     if (sees_sky_) add_feature("sky");
     if (cut_cells_ > 0) add_feature("cuts");
@@ -227,8 +231,7 @@ class BakeJob {
     write_png(report_.plan, plan_);
   }
 
-  LevelEntry bake_level(const LightField& light, const BakeState& state, const RoomEntry& room, LevelSize size,
-                        PackWriter& writer) {
+  LevelEntry bake_level(MapStore& maps, const RoomEntry& room, LevelSize size, PackWriter& writer) {
     RoomLevel level;
     level.origin_m = room.origin_m;
     LevelEntry entry;
@@ -236,7 +239,8 @@ class BakeJob {
     entry.radiance_size = static_cast<std::uint32_t>(size.radiance);
     for (std::uint32_t k = 0; k < room.probe_count; ++k) {
       stop_if_asked();
-      level.probes.push_back(bake_probe(light, state, room.first_probe + k, size));
+      const glm::dvec3 position = manifest_.probe_positions_m[room.first_probe + k];
+      level.probes.push_back({maps.geometry(position, size.geometry), maps.radiance(position, size.radiance)});
       const ProbeMap& probe = level.probes.back();
       const std::size_t cut = count_cut_cells(probe.geometry);
       cut_cells_ += cut;
@@ -251,20 +255,6 @@ class BakeJob {
     entry.bytes_disk = chunk.size();
     entry.chunk = writer.add_chunk(chunk);
     return entry;
-  }
-
-  ProbeMap bake_probe(const LightField& light, const BakeState& state, std::uint32_t index, LevelSize size) {
-    const glm::dvec3 position = manifest_.probe_positions_m[index];
-    if (std::optional<ProbeMap> kept = state.load(index, position, size.geometry, size.radiance)) return std::move(*kept);
-    const auto start = std::chrono::steady_clock::now();
-    ProbeMap map;
-    map.geometry = bake_geometry(rays_, position, size.geometry, &report_.rays);
-    map.radiance = bake_radiance(rays_, light, position, size.radiance, static_cast<float>(manifest_.radiance_scale),
-                                 &report_.rays);
-    baking_seconds_ += seconds_since(start);
-    baked_texels_ += std::uint64_t(size.radiance) * size.radiance;
-    state.store(index, map);
-    return map;
   }
 
   void stop_if_asked() const {
@@ -288,8 +278,7 @@ class BakeJob {
   std::vector<Pose> tour_;
   ImageRgb8 plan_;
   BakeReport report_;
-  double baking_seconds_ = 0.0;  // of the probes baked now, without those kept from before
-  std::uint64_t baked_texels_ = 0, done_texels_ = 0, cut_cells_ = 0, all_cells_ = 0;
+  std::uint64_t done_texels_ = 0, cut_cells_ = 0, all_cells_ = 0;
   bool sees_sky_ = false;
 };
 
