@@ -1,4 +1,5 @@
-// Maps of probes, baked once: what an earlier run of the same bake, or its planner, has finished is taken from the state.
+// Maps of probes, baked once: what an earlier run of the same bake, or its planner, has finished is taken from the
+// state.
 #pragma once
 
 #include <cstdint>
