@@ -13,7 +13,6 @@ PW_FUNCTION WalkState baseline_state(int status, real t, real t_start) {
   state.known = false;
   state.lookups = 0u;
   state.plane = real3(0);
-  state.plane_at = real2(0, 0);
   return state;
 }
 

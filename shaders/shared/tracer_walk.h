@@ -14,10 +14,6 @@
 // Status of a walk beside the answers of probe_layout.h.
 #define PW_WALKING (-1)
 #define PW_CLASS_BEHIND 3  // the ray's start lies behind the probe's surface
-// The first look is at entries at most this many times as wide as the way through the octant.
-#ifndef PW_FIRST_LOOK
-#define PW_FIRST_LOOK real(1)
-#endif
 // Sizes of what can be walked: origins up to here from the probe, directions no longer and no shorter than these. Beyond
 // them sums and reciprocals might not be finite.
 #define PW_GREATEST_M real(1e15)
@@ -43,9 +39,8 @@ struct WalkState {
   bool known;   // the current point has been proven to lie above the surface
   pw_uint lookups;
   // Of a hit: the plane that was met, as the p with dot(plane, p) = 1 relative to the probe; w along any direction is its
-  // product with the direction of unit L1 length. On the way: w at the piece's anchor, and slopes a cell step.
+  // product with the direction of unit L1 length.
   real3 plane;
-  real2 plane_at;  // on the way: the anchor, in the cell's unit square
 };
 
 // The piece met, in the world's terms. side: of the quadrant; upper: z > 0; corner: the cell's, quadrant-local.
@@ -94,36 +89,37 @@ PW_FUNCTION real entry_maximum(pw_uint entry) {
   return code == 0u ? real(0) : real(pw_float_from_bits((code + kEntryBase) << 14));
 }
 
-// The ray's height above one planar piece at its two ends decides. Returns true when the walk ends here. `cut`: the
-// piece ends in mid-air, so being below it on entry means having passed through a wall that nobody has seen.
-PW_FUNCTION bool meet_piece(OctantSegment s, real t_start, real texel, bool cut, real ray_w, real f0, real f1,
-                            real lambda0, real lambda1, PW_INOUT(WalkState) state) {
-  if (!state.known) {
-    if (f0 <= real(0)) {
-      // On a hand-off the start may lie on the surface itself, a texel behind by rounding: that is a hit.
-      bool touching = t_start > real(0) && -f0 < ray_w * texel;
-      state.status = touching ? kClassHit : PW_CLASS_BEHIND;
-      state.t = max(t_start, segment_t(s, lambda0));
-      state.t_safe = state.t;
-      return true;
-    }
-    state.known = true;
-  } else if (cut && f0 <= real(0)) {
-    state.status = kClassUnknown;
-    state.t = max(t_start, segment_t(s, lambda0));
+// The piece of surface at which a walk ends.
+struct Meeting {
+  bool cut;  // the piece ends in mid-air, so being below it on entry means having passed through a wall that nobody has seen
+  real ray_w;   // where the ray comes over the piece
+  real f0, f1;  // the ray's height above the piece, in w, there and where it leaves it again
+  real lambda0, lambda1;
+  real3 piece;  // w at the anchor, slopes a cell step
+  real2 at;     // the anchor in the cell's unit square
+};
+
+// The ray's height above a planar piece at its two ends decides whether the walk ends there. A piece of no length decides
+// nothing: which side of an outline its one point is on is anybody's guess, and a neighbour has the point, too.
+PW_FUNCTION bool ends_walk(bool known, Meeting m) {
+  return m.lambda1 > m.lambda0 && (m.f1 <= real(0) || (m.f0 <= real(0) && (m.cut || !known)));
+}
+
+PW_FUNCTION void end_walk(OctantSegment s, real t_start, real texel, Meeting m, PW_INOUT(WalkState) state) {
+  if (m.f0 <= real(0) && (m.cut || !state.known)) {
+    // On a hand-off the start may lie on the surface itself, a texel behind by rounding: that is a hit.
+    bool touching = t_start > real(0) && -m.f0 < m.ray_w * texel;
+    state.status = state.known ? kClassUnknown : touching ? kClassHit : PW_CLASS_BEHIND;
+    state.t = max(t_start, segment_t(s, m.lambda0));
     state.t_safe = state.t;
-    return true;
+    return;
   }
-  if (f1 <= real(0)) {
-    real tau = f0 > real(0) ? f0 / (f0 - f1) : real(0);
-    real lambda = lambda0 + (lambda1 - lambda0) * tau;
-    real rest = (real(1) - lambda1) + (lambda1 - lambda0) * (f0 > real(0) ? f1 / (f1 - f0) : real(1));
-    state.status = kClassHit;
-    state.t = max(t_start, lambda < real(0.5) ? segment_t(s, lambda) : segment_t_from_end(s, rest));
-    state.t_safe = max(t_start, segment_t(s, lambda0));
-    return true;
-  }
-  return false;
+  real tau = m.f0 > real(0) ? m.f0 / (m.f0 - m.f1) : real(0);
+  real lambda = m.lambda0 + (m.lambda1 - m.lambda0) * tau;
+  real rest = (real(1) - m.lambda1) + (m.lambda1 - m.lambda0) * (m.f0 > real(0) ? m.f1 / (m.f1 - m.f0) : real(1));
+  state.status = kClassHit;
+  state.t = max(t_start, lambda < real(0.5) ? segment_t(s, lambda) : segment_t_from_end(s, rest));
+  state.t_safe = max(t_start, segment_t(s, m.lambda0));
 }
 
 PW_FUNCTION real2 unpack_slopes(pw_uint word) {
@@ -145,9 +141,9 @@ PW_FUNCTION real sign_change(real a, real b) {
 
 // A triangle with disconnected edges: cut lines split it into regions, each with its own vertex's plane. The ray's
 // piece runs from p0 (w r0, lambda l0) to p1 in the cell's unit square. corner_w: w at v0, v1, v2.
-PW_FUNCTION bool meet_cut_triangle(pw_uvec2 geometry, int record, bool high, int mask, real3 corner_w, OctantSegment s,
-                                   real t_start, real texel, real l0, real r0, real2 p0, real l1, real r1, real2 p1,
-                                   PW_INOUT(WalkState) state) {
+PW_FUNCTION bool meet_cut_triangle(pw_uvec2 geometry, int record, bool high, int mask, real3 corner_w,
+                                   real l0, real r0, real2 p0, real l1, real r1, real2 p1, PW_INOUT(bool) known,
+                                   PW_INOUT(Meeting) m) {
   pw_uint fractions = pw_word(geometry, record);
   real2 v0 = high ? real2(1, 1) : real2(0, 0);
   real2 v1 = real2(1, 0);
@@ -239,27 +235,28 @@ PW_FUNCTION bool meet_cut_triangle(pw_uvec2 geometry, int record, bool high, int
       plane_x = alone ? lone_slope.x : pair_slope.x;
       plane_y = alone ? lone_slope.y : pair_slope.y;
     } else {
-      real3 m = a + (b - a) * middle;
-      int owner = m.x >= m.y && m.x >= m.z ? 0 : m.y >= m.z ? 1 : 2;
+      real3 c = a + (b - a) * middle;
+      int owner = c.x >= c.y && c.x >= c.z ? 0 : c.y >= c.z ? 1 : 2;
       w = owner == 0 ? corner_w.x : owner == 1 ? corner_w.y : corner_w.z;
       at = owner == 0 ? v0 : owner == 1 ? v1 : v2;
       plane_x = owner == 0 ? slope0.x : owner == 1 ? slope1.x : slope2.x;
       plane_y = owner == 0 ? slope0.y : owner == 1 ? slope1.y : slope2.y;
     }
-    if (w <= real(0)) {
-      state.known = true;  // sky: nothing to be behind of
-    } else {
-      real lambda0 = l0 + (l1 - l0) * from, lambda1 = l0 + (l1 - l0) * to;
-      real ray0 = r0 + (r1 - r0) * from, ray1 = r0 + (r1 - r0) * to;
+    if (w > real(0)) {
       real2 q0 = p0 + (p1 - p0) * from - at, q1 = p0 + (p1 - p0) * to - at;
-      real f0 = ray0 - (w + plane_x * q0.x + plane_y * q0.y);
-      real f1 = ray1 - (w + plane_x * q1.x + plane_y * q1.y);
-      if (meet_piece(s, t_start, texel, true, ray0, f0, f1, lambda0, lambda1, state)) {
-        state.plane = real3(w, plane_x, plane_y);
-        state.plane_at = at;
+      m.lambda0 = l0 + (l1 - l0) * from;
+      m.lambda1 = l0 + (l1 - l0) * to;
+      m.ray_w = r0 + (r1 - r0) * from;
+      m.f0 = m.ray_w - (w + plane_x * q0.x + plane_y * q0.y);
+      m.f1 = (r0 + (r1 - r0) * to) - (w + plane_x * q1.x + plane_y * q1.y);
+      if (ends_walk(known, m)) {
+        m.piece = real3(w, plane_x, plane_y);
+        m.at = at;
         return true;
       }
     }
+    // Sky, too: nothing to be behind of. Of a piece of no length nothing is known.
+    known = known || to > from;
     from = to;
   }
   return false;
@@ -290,175 +287,191 @@ PW_FUNCTION bool walk_segment(ProbeRecord probe, OctantSegment s, real t_start, 
   int top = min(planes ? start_level : start_level - kWithoutPlanes, pyramid_top(int(probe.n_log2)));
   top = top < 1 ? 0 : ((top - 1) | 1);
   const real way = max(abs(s.d_uv.x), abs(s.d_uv.y));
-  while (top > 1 && real(1 << top) > way * PW_FIRST_LOOK) top -= 2;
+  while (top > 1 && real(1 << top) > way) top -= 2;
   // A segment that moves by less than a cell, a ray's that runs (almost) straight away from the probe, meets three cells
   // at most, mostly one: looking at nodes first would only add to that (thesis 4.3: one look-up).
   if (way < real(1)) top = 0;
 
   int level = top, node_read = -1;
-  real lambda = real(0), w_in = s.w0;
+  real lambda = real(0), exit = real(0), w_in = s.w0, w_out = s.w0, crossing = real(0);
+  int line_x = 0, line_y = 0;
+  bool leave_x = false, last = false, passed = false;
   for (;;) {
-    // The node's far lines and where the ray leaves it.
-    int line_x = ((ix >> level) + (step_x > 0 ? 1 : 0)) << level;
-    int line_y = ((iy >> level) + (step_y > 0 ? 1 : 0)) << level;
-    real exit_x = step_x == 0 ? PW_NEVER : (real(line_x) - s.uv0.x) * per_u;
-    real exit_y = step_y == 0 ? PW_NEVER : (real(line_y) - s.uv0.y) * per_v;
-    bool leave_x = exit_x <= exit_y;
-    real crossing = leave_x ? exit_x : exit_y;
-    real exit = max(crossing, lambda);
-    bool last = !(exit < real(1));
-    if (last) exit = real(1);
-    real w_out = s.w0 + exit * s.dw;
-    real w_low = min(w_in, w_out);
-    if (level > 0) {
-      int half_nodes = half_n >> level;
-      int node_x = ix >> level, node_y = iy >> level;
-      int gx = s.side.x > 0 ? half_nodes + node_x : half_nodes - 1 - node_x;
-      int gy = s.side.y > 0 ? half_nodes + node_y : half_nodes - 1 - node_y;
-      int node = pyramid_node(n, level, gx, gy);
-      if (node != node_read) state.lookups += 1u;
-      node_read = node;
-      pw_uint entry = pyramid_entry(geometry, node, gx, gy);
-      real maximum = entry_maximum(entry);
-      if (!(maximum <= real(0)) && w_low <= maximum) {
-        if (!planes || (entry & kEntryPlanar) == 0u) {
-          level = max(level - 2, 0);
-          continue;
-        }
-        // One plane stands for all the entry's cells: that through the corners next to the map's centre.
-        int corner_x = node_x << level, corner_y = node_y << level, size = 1 << level;
-        int corner = (half_n + s.side.y * corner_y) * (n + 1) + half_n + s.side.x * corner_x;
-        real w00 = pw_word_real(geometry, corner);
-        real gu = (pw_word_real(geometry, corner + s.side.x * size) - w00) / real(size);
-        real gv = (pw_word_real(geometry, corner + s.side.y * size * (n + 1)) - w00) / real(size);
-        state.lookups += 1u;
-        real2 corner_uv = real2(real(corner_x), real(corner_y));
-        real2 q0 = s.uv0 + s.d_uv * lambda - corner_uv, q1 = s.uv0 + s.d_uv * exit - corner_uv;
-        real f0 = w_in - (w00 + gu * q0.x + gv * q0.y), f1 = w_out - (w00 + gu * q1.x + gv * q1.y);
-        if (meet_piece(s, t_start, texel, false, w_in, f0, f1, lambda, exit, state)) {
-          state.plane = plane_of_piece(real3(w00, gu, gv), real2(0, 0), corner_uv, s.side, s.upper, real(half_n));
-          return true;
-        }
-      }
-      state.known = true;
-    } else {
-      int vx = half_n + s.side.x * ix, vy = half_n + s.side.y * iy;
-      int corner = vy * (n + 1) + vx;
-      int row = s.side.y * (n + 1);
-      real w00 = pw_word_real(geometry, corner);
-      real w10 = pw_word_real(geometry, corner + s.side.x);
-      real w01 = pw_word_real(geometry, corner + row);
-      real w11 = pw_word_real(geometry, corner + row + s.side.x);
-      state.lookups += 1u;
-      real maximum = max(max(w00, w10), max(w01, w11));
-      int record = -1;
-      bool above = maximum <= real(0) || w_low > maximum * real(kCutExtension);
-      if (!above) {
-        if ((probe.flags & 1u) != 0u) {
-          int gx = s.side.x > 0 ? half_n + ix : half_n - 1 - ix;
-          int gy = s.side.y > 0 ? half_n + iy : half_n - 1 - iy;
-          int cell = gy * n + gx;
-          pw_uint mask = pw_word(geometry, masks + 2 * (cell >> 5));
-          pw_uint bit = 1u << pw_uint(cell & 31);
-          if ((mask & bit) != 0u) {
-            pw_uint before = pw_word(geometry, masks + 2 * (cell >> 5) + 1);
-            record = records + kCutRecordWords * int(before + pw_uint(bitCount(mask & (bit - 1u))));
+    // On to the next cell or planar entry that the ray comes down to. Rays that are walked side by side go through this
+    // loop first and what they have found then together: it is many times as long.
+    bool planar = false;
+    int record = -1;
+    real w00 = real(0), w10 = real(0), w01 = real(0), w11 = real(0);
+    real2 corner_uv = real2(0, 0);
+    for (;;) {
+      if (passed) {
+        if (last) return false;
+        // Step over the exit line. The other coordinate's cell is decided by the same comparisons of line parameters as
+        // a cell-by-cell walk would make, so that skipping nodes changes nothing: lines passed strictly before an x exit,
+        // before or at a y exit.
+        int old_x = ix, old_y = iy;
+        if (leave_x) {
+          ix = step_x > 0 ? line_x : line_x - 1;
+          if (step_y != 0 && level > 0) {
+            int guess = int(floor(s.uv0.y + exit * s.d_uv.y));
+            int low = step_y > 0 ? iy : line_y, high = step_y > 0 ? line_y - 1 : iy;
+            guess = min(max(guess, low), high);
+            if (step_y > 0) {
+              if (guess < high && (real(guess + 1) - s.uv0.y) * per_v < crossing) ++guess;
+              else if (guess > low && !((real(guess) - s.uv0.y) * per_v < crossing)) --guess;
+            } else {
+              if (guess > low && (real(guess) - s.uv0.y) * per_v < crossing) --guess;
+              else if (guess < high && !((real(guess + 1) - s.uv0.y) * per_v < crossing)) ++guess;
+            }
+            iy = guess;
+          }
+        } else {
+          iy = step_y > 0 ? line_y : line_y - 1;
+          if (step_x != 0 && level > 0) {
+            int guess = int(floor(s.uv0.x + exit * s.d_uv.x));
+            int low = step_x > 0 ? ix : line_x, high = step_x > 0 ? line_x - 1 : ix;
+            guess = min(max(guess, low), high);
+            if (step_x > 0) {
+              if (guess < high && (real(guess + 1) - s.uv0.x) * per_u <= crossing) ++guess;
+              else if (guess > low && !((real(guess) - s.uv0.x) * per_u <= crossing)) --guess;
+            } else {
+              if (guess > low && (real(guess) - s.uv0.x) * per_u <= crossing) --guess;
+              else if (guess < high && !((real(guess + 1) - s.uv0.x) * per_u <= crossing)) ++guess;
+            }
+            ix = guess;
           }
         }
-        above = record < 0 && w_low > maximum;
+        if (ix < 0 || iy < 0 || ix >= half_n || iy >= half_n) return false;
+        lambda = exit;
+        w_in = w_out;
+        if (level < top && (((ix ^ old_x) | (iy ^ old_y)) >> (level == 0 ? 1 : level + 2)) != 0) level = (level + 1) | 1;
       }
-      if (above) {
-        state.known = true;
+      // The node's far lines and where the ray leaves it.
+      line_x = ((ix >> level) + (step_x > 0 ? 1 : 0)) << level;
+      line_y = ((iy >> level) + (step_y > 0 ? 1 : 0)) << level;
+      real exit_x = step_x == 0 ? PW_NEVER : (real(line_x) - s.uv0.x) * per_u;
+      real exit_y = step_y == 0 ? PW_NEVER : (real(line_y) - s.uv0.y) * per_v;
+      leave_x = exit_x <= exit_y;
+      crossing = leave_x ? exit_x : exit_y;
+      exit = max(crossing, lambda);
+      last = !(exit < real(1));
+      if (last) exit = real(1);
+      w_out = s.w0 + exit * s.dw;
+      real w_low = min(w_in, w_out);
+      int gx = s.side.x > 0 ? (half_n >> level) + (ix >> level) : (half_n >> level) - 1 - (ix >> level);
+      int gy = s.side.y > 0 ? (half_n >> level) + (iy >> level) : (half_n >> level) - 1 - (iy >> level);
+      if (level > 0) {
+        int node = pyramid_node(n, level, gx, gy);
+        if (node != node_read) state.lookups += 1u;
+        node_read = node;
+        pw_uint entry = pyramid_entry(geometry, node, gx, gy);
+        real maximum = entry_maximum(entry);
+        passed = maximum <= real(0) || w_low > maximum;
+        planar = !passed && planes && (entry & kEntryPlanar) != 0u;
+        if (planar) break;
+        if (!passed) level = max(level - 2, 0);
       } else {
-        // Entry and exit in the cell's unit square; the cell's diagonal x + y = 1 parts low from high triangle.
-        real2 corner_uv = real2(real(ix), real(iy));
-        real2 p_in = s.uv0 + s.d_uv * lambda - corner_uv;
-        real2 p_out = s.uv0 + s.d_uv * exit - corner_uv;
-        real side_in = p_in.x + p_in.y - real(1), side_out = p_out.x + p_out.y - real(1);
-        bool both_low = side_in <= real(0) && side_out <= real(0);
-        bool both_high = !both_low && side_in >= real(0) && side_out >= real(0);
-        bool crosses = !(both_low || both_high);
-        bool high = both_low ? false : both_high ? true : side_in > real(0);
-        real l0 = lambda, r0 = w_in, l1 = exit, r1 = w_out;
-        real2 p0 = p_in, p1 = p_out;
-        if (crosses) {
-          real at = side_in / (side_in - side_out);
-          l1 = lambda + (exit - lambda) * at;
-          r1 = w_in + (w_out - w_in) * at;
-          p1 = p_in + (p_out - p_in) * at;
-        }
-        pw_uint flags = record < 0 ? 0u : pw_word(geometry, record + 1);
-        for (int part = 0; part < 2; ++part) {
-          int mask = int(flags >> (high ? 4u : 0u)) & 7;
-          real w_corner = high ? w11 : w00;
-          if (mask != 0) {
-            if (meet_cut_triangle(geometry, record, high, mask, real3(w_corner, w10, w01), s, t_start, texel, l0, r0,
-                                  p0, l1, r1, p1, state)) {
-              state.plane = plane_of_piece(state.plane, state.plane_at, corner_uv, s.side, s.upper, real(half_n));
-              return true;
-            }
-          } else if (w_corner <= real(0) && w10 <= real(0) && w01 <= real(0)) {
-            state.known = true;
-          } else {
-            real gu = high ? w11 - w01 : w10 - w00, gv = high ? w11 - w10 : w01 - w00;
-            real2 from_corner = high ? real2(1, 1) : real2(0, 0);
-            real2 q0 = p0 - from_corner, q1 = p1 - from_corner;
-            real f0 = r0 - (w_corner + gu * q0.x + gv * q0.y);
-            real f1 = r1 - (w_corner + gu * q1.x + gv * q1.y);
-            if (meet_piece(s, t_start, texel, false, r0, f0, f1, l0, l1, state)) {
-              state.plane = plane_of_piece(real3(w_corner, gu, gv), from_corner, corner_uv, s.side, s.upper, real(half_n));
-              return true;
+        int corner = (half_n + s.side.y * iy) * (n + 1) + half_n + s.side.x * ix;
+        int row = s.side.y * (n + 1);
+        w00 = pw_word_real(geometry, corner);
+        w10 = pw_word_real(geometry, corner + s.side.x);
+        w01 = pw_word_real(geometry, corner + row);
+        w11 = pw_word_real(geometry, corner + row + s.side.x);
+        state.lookups += 1u;
+        real maximum = max(max(w00, w10), max(w01, w11));
+        passed = maximum <= real(0) || w_low > maximum * real(kCutExtension);
+        if (!passed) {
+          if ((probe.flags & 1u) != 0u) {
+            int cell = gy * n + gx;
+            pw_uint mask = pw_word(geometry, masks + 2 * (cell >> 5));
+            pw_uint bit = 1u << pw_uint(cell & 31);
+            if ((mask & bit) != 0u) {
+              pw_uint before = pw_word(geometry, masks + 2 * (cell >> 5) + 1);
+              record = records + kCutRecordWords * int(before + pw_uint(bitCount(mask & (bit - 1u))));
             }
           }
-          if (!crosses) break;
-          crosses = false;
-          high = !high;
-          l0 = l1; r0 = r1; p0 = p1;
-          l1 = exit; r1 = w_out; p1 = p_out;
+          passed = record < 0 && w_low > maximum;
         }
+        if (!passed) break;
       }
+      if (passed) state.known = true;
     }
-    if (last) return false;
 
-    // Step over the exit line. The other coordinate's cell is decided by the same comparisons of line parameters as a
-    // cell-by-cell walk would make, so that skipping nodes changes nothing: lines passed strictly before an x exit,
-    // before or at a y exit.
-    int old_x = ix, old_y = iy;
-    if (leave_x) {
-      ix = step_x > 0 ? line_x : line_x - 1;
-      if (step_y != 0 && level > 0) {
-        int guess = int(floor(s.uv0.y + exit * s.d_uv.y));
-        int low = step_y > 0 ? iy : line_y, high = step_y > 0 ? line_y - 1 : iy;
-        guess = min(max(guess, low), high);
-        if (step_y > 0) {
-          if (guess < high && (real(guess + 1) - s.uv0.y) * per_v < crossing) ++guess;
-          else if (guess > low && !((real(guess) - s.uv0.y) * per_v < crossing)) --guess;
-        } else {
-          if (guess > low && (real(guess) - s.uv0.y) * per_v < crossing) --guess;
-          else if (guess < high && !((real(guess + 1) - s.uv0.y) * per_v < crossing)) ++guess;
-        }
-        iy = guess;
-      }
+    Meeting m;
+    m.cut = false;
+    bool ended = false;
+    if (planar) {
+      // One plane stands for all the entry's cells: that through the corners next to the map's centre.
+      int corner_x = (ix >> level) << level, corner_y = (iy >> level) << level, size = 1 << level;
+      int corner = (half_n + s.side.y * corner_y) * (n + 1) + half_n + s.side.x * corner_x;
+      real w = pw_word_real(geometry, corner);
+      real gu = (pw_word_real(geometry, corner + s.side.x * size) - w) / real(size);
+      real gv = (pw_word_real(geometry, corner + s.side.y * size * (n + 1)) - w) / real(size);
+      state.lookups += 1u;
+      corner_uv = real2(real(corner_x), real(corner_y));
+      real2 q0 = s.uv0 + s.d_uv * lambda - corner_uv, q1 = s.uv0 + s.d_uv * exit - corner_uv;
+      m.ray_w = w_in;
+      m.f0 = w_in - (w + gu * q0.x + gv * q0.y);
+      m.f1 = w_out - (w + gu * q1.x + gv * q1.y);
+      m.lambda0 = lambda;
+      m.lambda1 = exit;
+      m.piece = real3(w, gu, gv);
+      m.at = real2(0, 0);
+      ended = ends_walk(state.known, m);
     } else {
-      iy = step_y > 0 ? line_y : line_y - 1;
-      if (step_x != 0 && level > 0) {
-        int guess = int(floor(s.uv0.x + exit * s.d_uv.x));
-        int low = step_x > 0 ? ix : line_x, high = step_x > 0 ? line_x - 1 : ix;
-        guess = min(max(guess, low), high);
-        if (step_x > 0) {
-          if (guess < high && (real(guess + 1) - s.uv0.x) * per_u <= crossing) ++guess;
-          else if (guess > low && !((real(guess) - s.uv0.x) * per_u <= crossing)) --guess;
-        } else {
-          if (guess > low && (real(guess) - s.uv0.x) * per_u <= crossing) --guess;
-          else if (guess < high && !((real(guess + 1) - s.uv0.x) * per_u <= crossing)) ++guess;
+      // Entry and exit in the cell's unit square; the cell's diagonal x + y = 1 parts low from high triangle.
+      corner_uv = real2(real(ix), real(iy));
+      real2 p_in = s.uv0 + s.d_uv * lambda - corner_uv;
+      real2 p_out = s.uv0 + s.d_uv * exit - corner_uv;
+      real side_in = p_in.x + p_in.y - real(1), side_out = p_out.x + p_out.y - real(1);
+      bool both_low = side_in <= real(0) && side_out <= real(0);
+      bool both_high = !both_low && side_in >= real(0) && side_out >= real(0);
+      bool crosses = !(both_low || both_high);
+      bool high = both_low ? false : both_high ? true : side_in > real(0);
+      real l0 = lambda, r0 = w_in, l1 = exit, r1 = w_out;
+      real2 p0 = p_in, p1 = p_out;
+      if (crosses) {
+        real at = side_in / (side_in - side_out);
+        l1 = lambda + (exit - lambda) * at;
+        r1 = w_in + (w_out - w_in) * at;
+        p1 = p_in + (p_out - p_in) * at;
+      }
+      pw_uint flags = record < 0 ? 0u : pw_word(geometry, record + 1);
+      for (int part = 0; part < 2; ++part) {
+        int mask = int(flags >> (high ? 4u : 0u)) & 7;
+        real w_corner = high ? w11 : w00;
+        m.cut = mask != 0;
+        if (m.cut) {
+          ended = meet_cut_triangle(geometry, record, high, mask, real3(w_corner, w10, w01), l0, r0, p0, l1, r1, p1,
+                                    state.known, m);
+        } else if (w_corner > real(0) || w10 > real(0) || w01 > real(0)) {
+          real gu = high ? w11 - w01 : w10 - w00, gv = high ? w11 - w10 : w01 - w00;
+          real2 from_corner = high ? real2(1, 1) : real2(0, 0);
+          real2 q0 = p0 - from_corner, q1 = p1 - from_corner;
+          m.ray_w = r0;
+          m.f0 = r0 - (w_corner + gu * q0.x + gv * q0.y);
+          m.f1 = r1 - (w_corner + gu * q1.x + gv * q1.y);
+          m.lambda0 = l0;
+          m.lambda1 = l1;
+          m.piece = real3(w_corner, gu, gv);
+          m.at = from_corner;
+          ended = ends_walk(state.known, m);
         }
-        ix = guess;
+        if (ended || !crosses) break;
+        state.known = state.known || l1 > l0;
+        crosses = false;
+        high = !high;
+        l0 = l1; r0 = r1; p0 = p1;
+        l1 = exit; r1 = w_out; p1 = p_out;
       }
     }
-    if (ix < 0 || iy < 0 || ix >= half_n || iy >= half_n) return false;
-    lambda = exit;
-    w_in = w_out;
-    if (level < top && (((ix ^ old_x) | (iy ^ old_y)) >> (level == 0 ? 1 : level + 2)) != 0) level = (level + 1) | 1;
+    if (ended) {
+      end_walk(s, t_start, texel, m, state);
+      state.plane = plane_of_piece(m.piece, m.at, corner_uv, s.side, s.upper, real(half_n));
+      return true;
+    }
+    state.known = state.known || exit > lambda;
+    passed = true;
   }
 }
 
@@ -486,7 +499,6 @@ PW_FUNCTION WalkState walk_probe(ProbeRecord probe, real3 x, real3 d, real t_sta
   state.known = false;
   state.lookups = 0u;
   state.plane = real3(0);
-  state.plane_at = real2(0, 0);
   const real half_n = real(1 << int(probe.n_log2 - 1u));
   const real l_min = real(probe.l_min_m);
   // Of a ray whose numbers are none nothing is known; the comparisons fail for NaN, too.
