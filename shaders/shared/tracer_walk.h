@@ -105,6 +105,20 @@ PW_FUNCTION bool ends_walk(bool known, Meeting m) {
   return m.lambda1 > m.lambda0 && (m.f1 <= real(0) || (m.f0 <= real(0) && (m.cut || !known)));
 }
 
+// Whether the cells under a planar entry, each within kPlanarTolerance of it, could say something else than its plane
+// does: the ray comes or goes about as close to it as that, or crosses it so flatly that the distance changes by more than
+// kPlaneError. w_out: the ray's, where it leaves.
+PW_FUNCTION bool plane_is_doubtful(OctantSegment s, Meeting m, real w_out) {
+  const real tolerance = real(kPlanarTolerance);
+  if (abs(m.f0) <= tolerance * (m.ray_w - m.f0) || abs(m.f1) <= tolerance * (w_out - m.f1)) return true;
+  if (m.f0 < real(0) || m.f1 > real(0)) return false;
+  // t is a quotient of linear functions, so dt = turn / w^2 dlambda, and the tolerance shifts lambda by tolerance w over
+  // the slope.
+  real fall = m.f0 - m.f1, length = m.lambda1 - m.lambda0, lambda = m.lambda0 + length * (m.f0 / fall);
+  real turn = s.dtw * s.w0 - s.tw0 * s.dw;
+  return abs(turn) * tolerance * length > real(kPlaneError) * fall * (s.tw0 + lambda * s.dtw);
+}
+
 PW_FUNCTION void end_walk(OctantSegment s, real t_start, real texel, Meeting m, PW_INOUT(WalkState) state) {
   if (m.f0 <= real(0) && (m.cut || !state.known)) {
     // On a hand-off the start may lie on the surface itself, a texel behind by rounding: that is a hit.
@@ -417,6 +431,11 @@ PW_FUNCTION bool walk_segment(ProbeRecord probe, OctantSegment s, real t_start, 
       m.lambda1 = exit;
       m.piece = real3(w, gu, gv);
       m.at = real2(0, 0);
+      if (plane_is_doubtful(s, m, w_out)) {
+        level = max(level - 2, 0);
+        passed = false;
+        continue;
+      }
       ended = ends_walk(state.known, m);
     } else {
       // Entry and exit in the cell's unit square; the cell's diagonal x + y = 1 parts low from high triangle.
