@@ -15,7 +15,7 @@ namespace {
 constexpr int kLeastCells = 8;
 
 // A probe under open sky: only its place matters here.
-DeviceProbe placeholder_probe(glm::dvec3 position_m) {
+DeviceProbe open_probe(glm::dvec3 position_m) {
   constexpr std::size_t n = kLeastCells;
   ProbeMap map;
   map.geometry.position_m = position_m;
@@ -40,7 +40,7 @@ ProbeSet cube_probes() {
   grid.dims = {2, 2, 2};
   std::vector<DeviceProbe> probes;
   for (int k = 0; k < 8; ++k) {
-    probes.push_back(placeholder_probe(cube_corner(k)));
+    probes.push_back(open_probe(cube_corner(k)));
     grid.probe.push_back(static_cast<std::uint32_t>(k));
   }
   return ProbeSet(std::move(probes), grid);
@@ -109,11 +109,15 @@ CubeOrdering::CubeOrdering() : probes_(cube_probes()) {}
 
 std::array<int, 8> CubeOrdering::order(const SelectionRules& rules, glm::dvec3 origin,
                                        glm::dvec3 unit_direction) const {
-  const f32::CandidateList list =
+  f32::CellCandidates cell =
       f32::cell_candidates(probes_.grid(), default_dials(1.0), rules, glm::vec3(origin), glm::vec3(unit_direction));
-  if (list.count != 8) throw std::logic_error("a cell with eight probes has other than eight candidates");
   std::array<int, 8> order{};
-  std::copy_n(list.probe, 8, order.begin());
+  for (int& id : order) {
+    const int corner = f32::best_candidate(cell);
+    if (corner == PW_CANDIDATES) throw std::logic_error("a cell with eight probes has fewer than eight candidates");
+    id = f32::candidate_probe(cell, corner);
+    f32::strike_candidate(cell, id);
+  }
   return order;
 }
 

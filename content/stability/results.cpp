@@ -71,6 +71,7 @@ ordered_json to_json(const CaseTally& tally) {
           {"classes", classes},
           {"float_vs_double", to_json(tally.float_double)},
           {"float_vs_flat", to_json(tally.float_flat)},
+          {"double_vs_flat", to_json(tally.double_planes)},
           {"device_vs_double", to_json(tally.device_double)},
           {"device_vs_float", to_json(tally.device_float)},
           {"float_vs_brute_force", to_json(tally.float_brute)},
@@ -177,9 +178,11 @@ std::vector<std::string> summary(const TrialInfo& info, const std::vector<CaseRe
       fmt::format("{} answers held a NaN or an infinity; {} walks were endless (the longest took {} look-ups); {} "
                   "answers changed by a bit when nodes of the pyramid were skipped instead of walked cell by cell. Where "
                   "one plane stood for many cells, {} answers changed beyond ties; 99 % of the others' distances changed "
-                  "by {:.1e} at most.",
+                  "by {:.1e} at most. In double, where rounding has no part in it, {} answers changed beyond ties, and no "
+                  "other distance by more than {:.1e} ({:.0e} is allowed).",
                   all.not_finite, all.endless, all.lookups_max, all.hierarchical_differs, all.float_flat.beyond_ties(),
-                  all.float_flat.errors.percentile(0.99)));
+                  all.float_flat.errors.percentile(0.99), all.double_planes.beyond_ties(), all.double_planes.errors.max(),
+                  kPlaneError));
   if (device) {
     lines.push_back(fmt::format(
         "The device gave the same bits as C++ float for {} of {} rays; {} answers differ, {} of them beyond ties.",

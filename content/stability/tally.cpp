@@ -47,6 +47,7 @@ void CaseTally::merge(const CaseTally& other) {
   rays += other.rays;
   float_double.merge(other.float_double);
   float_flat.merge(other.float_flat);
+  double_planes.merge(other.double_planes);
   device_double.merge(other.device_double);
   device_float.merge(other.device_float);
   float_brute.merge(other.float_brute);

@@ -68,7 +68,8 @@ struct CaseTally {
   std::uint64_t rays = 0;
   Comparison float_double;   // C++ float against the double walk, cell by cell: all rays
   Comparison float_flat;     // against C++ float cell by cell: what the pyramid's planes change
-  Comparison device_double;  // the device against the same
+  Comparison double_planes;  // that change in double, where rounding has no part in it
+  Comparison device_double;  // the device against the double walk
   Comparison device_float;   // the device against C++ float: a difference of a bit is not one here
   Comparison float_brute;    // against brute force: some rays
   Comparison device_brute;

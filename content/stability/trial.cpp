@@ -70,6 +70,8 @@ class Judge {
     };
     tally.float_double.add(ray, index, single, twice, place_.scale_m, against(double_walk, single));
     tally.float_flat.add(ray, index, single, flat, place_.scale_m, against(double_walk, single));
+    const Answer twice_by_planes = walk_in_double(record, x, d, t_start, kStartLevel);
+    tally.double_planes.add(ray, index, twice_by_planes, twice, place_.scale_m, against(double_walk, twice_by_planes));
     if (device) {
       tally.device_double.add(ray, index, *device, twice, place_.scale_m, against(double_walk, *device));
       // A tie here: double, too, may answer as the device does.
@@ -196,6 +198,11 @@ std::vector<std::string> failures(const CaseResult& result) {
   fail(tally.more_than_one, "rays straight away from the probe took more than one look-up");
   beyond(tally.float_double, "float", "the double walk");
   beyond(tally.float_flat, "float by pyramid and planes", "float cell by cell");
+  beyond(tally.double_planes, "double by pyramid and planes", "double cell by cell");
+  if (tally.double_planes.errors.max() > double{kPlaneError} * 1.001) {
+    lines.push_back(fmt::format("{}: planes change a distance by {:.1e}, more than the {:.0e} allowed", where,
+                                tally.double_planes.errors.max(), kPlaneError));
+  }
   beyond(tally.device_double, "the device", "the double walk");
   beyond(tally.device_float, "the device", "C++ float");
   beyond(tally.float_brute, "float", "brute force");

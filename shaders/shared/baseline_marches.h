@@ -5,8 +5,8 @@
 //                    nodes of the pyramid of minima (5.6, 9.1)
 //   march_two_level  texels of a map of minima, 16 times coarser, and where one may hold a hit, its fine texels
 //                    (McGuire, Mara, Nowrouzezahrai, Luebke 2017, Precomputed light field probes)
-// Included after tracer_walk.h, whose WalkState, axis_crossing and octant_sign it uses. No include
-// guard: C++ includes it once a type.
+// Included after tracer_walk.h, whose WalkState, first_octant and next_octant it uses. No include guard: C++
+// includes it once a type.
 //
 // A texel is taken for a piece of the sphere of its distance. A line between two texels is a plane through the probe,
 // so the ray crosses it at one t, which is computed from the line's number alone: it is the same whichever nodes were
@@ -116,18 +116,6 @@ PW_FUNCTION void settle_surface(BaselineRecord map, MarchRules rules, int texel,
   state.plane = plane;
 }
 
-PW_FUNCTION WalkState start_of_march(real t_start) {
-  WalkState state;
-  state.status = PW_WALKING;
-  state.t = t_start;
-  state.t_safe = t_start;
-  state.known = false;
-  state.lookups = 0u;
-  state.plane = real3(0);
-  state.plane_at = real2(0, 0);
-  return state;
-}
-
 // Texel (row-major) of the map of n texels a side that the direction of p, not 0, falls into.
 PW_FUNCTION int texel_of_direction(int n, real3 p) {
   real scale = real(1) / (abs(p.x) + abs(p.y) + abs(p.z));
@@ -144,7 +132,7 @@ PW_FUNCTION int texel_of_direction(int n, real3 p) {
 
 // Points of the ray x + t d (x relative to the probe, d of unit length) at t_start and every step_m further.
 PW_FUNCTION WalkState march_3d(BaselineRecord map, MarchRules rules, real3 x, real3 d, real t_start) {
-  WalkState state = start_of_march(t_start);
+  WalkState state = walk_state(PW_WALKING, t_start, t_start);
   const int n = 1 << int(map.n_log2);
   const real farthest = min(rules.farthest_m, PW_FARTHEST);
   for (int step = 0; step < rules.max_steps; ++step) {
@@ -332,26 +320,13 @@ PW_FUNCTION bool march_segment(BaselineRecord map, MarchRules rules, real3 x, re
 // The ray x + t d, octant by octant, through the texels or nodes that it crosses.
 PW_FUNCTION WalkState march_octants(BaselineRecord map, MarchRules rules, real3 x, real3 d, real t_start, int top,
                                     bool leap) {
-  WalkState state = start_of_march(t_start);
+  WalkState state = walk_state(PW_WALKING, t_start, t_start);
   const real farthest = min(rules.farthest_m, PW_FARTHEST);
   const int half_n = 1 << int(map.n_log2 - 1u);
   int steps = 0;
 
   real3 t_cross, s;
-  real t_axis;
-  bool crosses_x = axis_crossing(x.x, d.x, t_axis);
-  t_cross.x = t_axis;
-  bool crosses_y = axis_crossing(x.y, d.y, t_axis);
-  t_cross.y = t_axis;
-  bool crosses_z = axis_crossing(x.z, d.z, t_axis);
-  t_cross.z = t_axis;
-  s.x = octant_sign(crosses_x, t_cross.x, t_start, x.x, d.x);
-  s.y = octant_sign(crosses_y, t_cross.y, t_start, x.y, d.y);
-  s.z = octant_sign(crosses_z, t_cross.z, t_start, x.z, d.z);
-  if (!crosses_x || t_cross.x <= t_start) t_cross.x = PW_NEVER;
-  if (!crosses_y || t_cross.y <= t_start) t_cross.y = PW_NEVER;
-  if (!crosses_z || t_cross.z <= t_start) t_cross.z = PW_NEVER;
-
+  first_octant(x, d, t_start, t_cross, s);
   real t_a = t_start;
   int crossed = -1;  // axis whose plane the stretch starts on
   for (int k = 0; k < 4 && t_a < farthest; ++k) {
@@ -395,18 +370,7 @@ PW_FUNCTION WalkState march_octants(BaselineRecord map, MarchRules rules, real3 
       t_a = t_b;
     }
     crossed = axis;
-    if (axis == 0) {
-      t_cross.x = PW_NEVER;
-      s.x = -s.x;
-    }
-    if (axis == 1) {
-      t_cross.y = PW_NEVER;
-      s.y = -s.y;
-    }
-    if (axis == 2) {
-      t_cross.z = PW_NEVER;
-      s.z = -s.z;
-    }
+    next_octant(axis, t_cross, s);
   }
   state.status = kClassMiss;
   state.t = PW_NEVER;

@@ -5,18 +5,6 @@
 // Iterations of the impostor's secant search. Planes need one; the paper finds that two or three do elsewhere.
 #define PW_IMPOSTOR_SECANTS 4
 
-PW_FUNCTION WalkState baseline_state(int status, real t, real t_start) {
-  WalkState state;
-  state.status = status;
-  state.t = t;
-  state.t_safe = t_start;
-  state.known = false;
-  state.lookups = 0u;
-  state.plane = real3(0);
-  state.plane_at = real2(0, 0);
-  return state;
-}
-
 // Distance stored in the texel that the direction of q falls into.
 PW_FUNCTION real baseline_distance(BaselineRecord map, real3 q) {
   int n = 1 << int(map.n_log2);
@@ -47,7 +35,7 @@ PW_FUNCTION real baseline_nearness(BaselineRecord map, real3 q) {
 // were infinitely far. The distance is the one that the probe itself sees there. Reads the pack's own samples.
 PW_FUNCTION WalkState walk_environment(ProbeRecord probe, real3 d, real t_start) {
   real w = nearest_vertex_w(probe, d);
-  WalkState state = baseline_state(w > real(0) ? kClassHit : kClassMiss, PW_NEVER, t_start);
+  WalkState state = walk_state(w > real(0) ? kClassHit : kClassMiss, PW_NEVER, t_start);
   if (w > real(0)) state.t = real(1) / (w * (abs(d.x) + abs(d.y) + abs(d.z)));
   state.lookups = 1u;
   return state;
@@ -56,10 +44,10 @@ PW_FUNCTION WalkState walk_environment(ProbeRecord probe, real3 d, real t_start)
 // The answer of a proxy that the ray leaves at t: sky where the probe sees sky there. A proxy is seen from inside: of rays
 // that start elsewhere it says nothing.
 PW_FUNCTION WalkState proxy_answer(BaselineRecord map, real3 x, real3 d, real t, real t_start) {
-  if (!(t > t_start)) return baseline_state(kClassUnknown, t_start, t_start);
+  if (!(t > t_start)) return walk_state(kClassUnknown, t_start, t_start);
   real3 q = x + d * t;
   bool sky = !(baseline_distance(map, q) < real(kBaselineSky_m));
-  WalkState state = baseline_state(sky ? kClassMiss : kClassHit, sky ? PW_NEVER : t, t_start);
+  WalkState state = walk_state(sky ? kClassMiss : kClassHit, sky ? PW_NEVER : t, t_start);
   state.lookups = 1u;
   return state;
 }
@@ -67,10 +55,10 @@ PW_FUNCTION WalkState proxy_answer(BaselineRecord map, real3 x, real3 d, real t,
 // The probe as a sphere around it (Bjorke 2004), of its mean distance.
 PW_FUNCTION WalkState walk_sphere_proxy(BaselineRecord map, real3 x, real3 d, real t_start) {
   real radius = real(map.mean_m);
-  if (!(radius > real(0))) return baseline_state(kClassMiss, PW_NEVER, t_start);
+  if (!(radius > real(0))) return walk_state(kClassMiss, PW_NEVER, t_start);
   real along = x.x * d.x + x.y * d.y + x.z * d.z;
   real beyond = x.x * x.x + x.y * x.y + x.z * x.z - radius * radius;
-  if (beyond > real(0)) return baseline_state(kClassUnknown, t_start, t_start);
+  if (beyond > real(0)) return walk_state(kClassUnknown, t_start, t_start);
   // The farther root, by the form in which nothing cancels.
   real root = sqrt(along * along - beyond);
   real t = along > real(0) ? -beyond / (along + root) : root - along;
@@ -80,13 +68,13 @@ PW_FUNCTION WalkState walk_sphere_proxy(BaselineRecord map, real3 x, real3 d, re
 // The probe as the box of its room (Bjorke 2004): the ray is followed to the box's inside, and that point looked at from
 // the probe.
 PW_FUNCTION WalkState walk_box_proxy(BaselineRecord map, real3 x, real3 d, real t_start) {
-  if (!(map.mean_m > 0.0f)) return baseline_state(kClassMiss, PW_NEVER, t_start);
+  if (!(map.mean_m > 0.0f)) return walk_state(kClassMiss, PW_NEVER, t_start);
   real3 low = real3(map.box_min_m), high = real3(map.box_max_m);
   real leave = PW_NEVER;
   for (int axis = 0; axis < 3; ++axis) {
     real at = axis == 0 ? x.x : axis == 1 ? x.y : x.z, slope = axis == 0 ? d.x : axis == 1 ? d.y : d.z;
     real from = axis == 0 ? low.x : axis == 1 ? low.y : low.z, to = axis == 0 ? high.x : axis == 1 ? high.y : high.z;
-    if (at < from || at > to) return baseline_state(kClassUnknown, t_start, t_start);
+    if (at < from || at > to) return walk_state(kClassUnknown, t_start, t_start);
     if (abs(slope) < real(1e-20)) continue;
     leave = min(leave, ((slope > real(0) ? to : from) - at) / slope);
   }
@@ -99,7 +87,7 @@ PW_FUNCTION WalkState walk_box_proxy(BaselineRecord map, real3 x, real3 d, real 
 // |r| = distance(r), times 1 - s, is |q| / distance(q) = 1 - s, of which both sides are linear in s where the surface is a
 // plane: a secant meets planes exactly. What it converges to at an outline is anybody's guess, as its source says.
 PW_FUNCTION WalkState walk_impostor(BaselineRecord map, real3 x, real3 d, real t_start, int steps) {
-  WalkState state = baseline_state(kClassMiss, PW_NEVER, t_start);
+  WalkState state = walk_state(kClassMiss, PW_NEVER, t_start);
   const real scale = real(map.mean_m);
   if (!(scale > real(0))) return state;
   const real3 first = x + d * t_start;

@@ -20,6 +20,7 @@ using pw_ivec3 = glm::ivec3;
 #define PW_SHARED_END }
 #define PW_FUNCTION inline
 #define PW_CONSTANT inline constexpr
+#define PW_UNROLL
 #else
 #define pw_uint uint
 #define pw_int int
@@ -33,6 +34,8 @@ using pw_ivec3 = glm::ivec3;
 #define PW_SHARED_END
 #define PW_FUNCTION
 #define PW_CONSTANT const
+// For loops over what should stay in registers: arrays that are indexed at run time live in memory.
+#define PW_UNROLL [[unroll]]
 #endif
 
 #endif

@@ -43,9 +43,11 @@ PW_CONSTANT int kStartLevel = 5;
 // without a pyramid.
 PW_CONSTANT int kWithoutPlanes = 16;
 PW_CONSTANT int kCutRecordWords = 8;
-// Relative to w. Beyond what floats hold of it, so that walls are planar; a distance changes by as much or, where the ray
-// grazes the surface, by what rounding does to it anyway.
+// Relative to w. Beyond what floats hold of it, so that walls are planar.
 PW_CONSTANT float kPlanarTolerance = 2e-6f;
+// By how much of itself a distance may change when one plane stands for many cells; where a ray comes so flatly that it
+// could be more, or so close that it could be a hit or none, the cells decide.
+PW_CONSTANT float kPlaneError = 1e-5f;
 PW_CONSTANT pw_uint kEntryPlanar = 0x8000u;
 // Entries hold w from 2^-32 on, 512 steps an octave: code + kEntryBase are the upper 18 bits of the float.
 PW_CONSTANT pw_uint kEntryBase = 48640u;

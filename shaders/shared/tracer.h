@@ -82,10 +82,11 @@ PW_FUNCTION int start_test(ProbeRecord probe, real3 x, real margin, PW_INOUT(pw_
 #define PW_FADE_FROM real(0.5)
 #define PW_FADE_PER_CELL real(8)
 
-struct CandidateList {
-  int count;
+// The probes at the corners of a grid cell, corner (x, y, z) as number x + 2 y + 4 z; each is asked for by the best of
+// the corners that it serves.
+struct CellCandidates {
   int probe[PW_CANDIDATES];
-  real score[PW_CANDIDATES];
+  real score[PW_CANDIDATES];  // -PW_NEVER: not (or no more) to be asked
 };
 
 // How promising a probe is for a ray of unit direction d, `away` from it: what is first of a cell has the highest score.
@@ -98,66 +99,69 @@ PW_FUNCTION real candidate_score(GridConstants grid, TraceConstants dials, int f
   return cosine - real(dials.distance_weight) * distance * real(grid.inverse_diagonal);
 }
 
-// The corner that is asked k-th when `first` is asked first, by a fixed order.
-PW_FUNCTION int ordered_corner(int order, int first, int k) {
-  if (order == kOrderPlusThree) return (first + 3 * k) & 7;
-  return first ^ ((0x71634250 >> (4 * k)) & 7);
+// When a corner is asked if `first` is asked first, by a fixed order.
+PW_FUNCTION int corner_rank(int order, int first, int corner) {
+  if (order == kOrderPlusThree) return (3 * (corner - first)) & 7;
+  return (0x75134260 >> (4 * (corner ^ first))) & 7;
 }
 
-// The probes at the corners of the grid cell that holds q (clamped to the grid), in the order of the rules; by default by
-// falling score: how well the ray runs away from the probe, less its distance, less how far beyond the cell's middle its
-// corner lies. Probes that are not resident are left out.
-PW_FUNCTION CandidateList cell_candidates(GridConstants grid, TraceConstants dials, SelectionRules rules, real3 q,
-                                          real3 d) {
-  CandidateList list;
-  list.count = 0;
+// The corner to be asked next; PW_CANDIDATES when there is none.
+PW_FUNCTION int best_candidate(CellCandidates cell) {
+  int best = PW_CANDIDATES;
+  real best_score = -PW_NEVER;
+  PW_UNROLL for (int k = 0; k < PW_CANDIDATES; ++k) {
+    bool better = cell.score[k] > best_score;
+    best = better ? k : best;
+    best_score = better ? cell.score[k] : best_score;
+  }
+  return best;
+}
+
+PW_FUNCTION int candidate_probe(CellCandidates cell, int corner) {
+  int id = cell.probe[0];
+  PW_UNROLL for (int k = 1; k < PW_CANDIDATES; ++k) id = k == corner ? cell.probe[k] : id;
+  return id;
+}
+
+// Takes a probe from all its corners.
+PW_FUNCTION void strike_candidate(PW_INOUT(CellCandidates) cell, int id) {
+  PW_UNROLL for (int k = 0; k < PW_CANDIDATES; ++k) {
+    cell.score[k] = cell.probe[k] == id ? -PW_NEVER : cell.score[k];
+  }
+}
+
+// The probes at the corners of the grid cell that holds q (clamped to the grid), scored by the rules; by default: how well
+// the ray runs away from the probe, less its distance, less how far beyond the cell's middle its corner lies. Probes that
+// are not resident are left out.
+PW_FUNCTION CellCandidates cell_candidates(GridConstants grid, TraceConstants dials, SelectionRules rules, real3 q,
+                                           real3 d) {
+  CellCandidates list;
   real3 cell = (q - real3(grid.origin_m)) / real3(grid.spacing_m);
   int cx = min(max(int(floor(min(max(cell.x, real(-1)), real(65536)))), 0), max(0, grid.dims.x - 2));
   int cy = min(max(int(floor(min(max(cell.y, real(-1)), real(65536)))), 0), max(0, grid.dims.y - 2));
   int cz = min(max(int(floor(min(max(cell.z, real(-1)), real(65536)))), 0), max(0, grid.dims.z - 2));
   real3 part = real3(min(max(cell.x - real(cx), real(0)), real(1)), min(max(cell.y - real(cy), real(0)), real(1)),
                      min(max(cell.z - real(cz), real(0)), real(1)));
-  int best_corner = 0;
-  real best_score = -PW_NEVER;
-  // Fixed orders start at the best corner, so they are made in a second round.
-  const int rounds = rules.order == kOrderSorted ? 1 : 2;
-  for (int round = 0; round < rounds; ++round) {
-    for (int k = 0; k < PW_CANDIDATES; ++k) {
-      int corner = round == 0 ? k : ordered_corner(rules.order, best_corner, k);
-      int x = min(cx + (corner & 1), grid.dims.x - 1);
-      int y = min(cy + ((corner >> 1) & 1), grid.dims.y - 1);
-      int z = min(cz + (corner >> 2), grid.dims.z - 1);
-      int id = int(pw_word(grid.table_address, (z * grid.dims.y + y) * grid.dims.x + x));
-      bool wanted = true;
-      for (int j = 0; j < list.count; ++j) wanted = wanted && list.probe[j] != id;
-      if (!wanted) continue;
-      ProbeRecord probe = pw_probe(grid, id);
-      if (probe.n_log2 == 0u) continue;
-      if (round == 1) {
-        list.probe[list.count] = id;
-        list.count += 1;
-        continue;
-      }
-      real score = candidate_score(grid, dials, rules.first, q - real3(probe.position_hi_m), d);
-      if (rules.first == kFirstSignedLessDistance) {
-        real off_x = (corner & 1) != 0 ? real(1) - part.x : part.x, off_y = (corner & 2) != 0 ? real(1) - part.y : part.y;
-        real off_z = (corner & 4) != 0 ? real(1) - part.z : part.z;
-        real off = max(off_x, max(off_y, off_z));
-        score = score - max(off - PW_FADE_FROM, real(0)) * PW_FADE_PER_CELL;
-      }
-      if (score > best_score) {
-        best_score = score;
-        best_corner = corner;
-      }
-      if (rules.order != kOrderSorted) continue;
-      int at = list.count;
-      for (; at > 0 && list.score[at - 1] < score; --at) {
-        list.score[at] = list.score[at - 1];
-        list.probe[at] = list.probe[at - 1];
-      }
-      list.score[at] = score;
-      list.probe[at] = id;
-      list.count += 1;
+  PW_UNROLL for (int k = 0; k < PW_CANDIDATES; ++k) {
+    int x = min(cx + (k & 1), grid.dims.x - 1);
+    int y = min(cy + ((k >> 1) & 1), grid.dims.y - 1);
+    int z = min(cz + (k >> 2), grid.dims.z - 1);
+    int id = int(pw_word(grid.table_address, (z * grid.dims.y + y) * grid.dims.x + x));
+    ProbeRecord probe = pw_probe(grid, id);
+    real score = candidate_score(grid, dials, rules.first, q - real3(probe.position_hi_m), d);
+    if (rules.first == kFirstSignedLessDistance) {
+      real off_x = (k & 1) != 0 ? real(1) - part.x : part.x, off_y = (k & 2) != 0 ? real(1) - part.y : part.y;
+      real off_z = (k & 4) != 0 ? real(1) - part.z : part.z;
+      real off = max(off_x, max(off_y, off_z));
+      score = score - max(off - PW_FADE_FROM, real(0)) * PW_FADE_PER_CELL;
+    }
+    list.probe[k] = id;
+    list.score[k] = probe.n_log2 == 0u ? -PW_NEVER : score;
+  }
+  if (rules.order != kOrderSorted) {
+    int first = best_candidate(list);
+    PW_UNROLL for (int k = 0; k < PW_CANDIDATES; ++k) {
+      if (list.score[k] > -PW_NEVER) list.score[k] = -real(corner_rank(rules.order, first, k));
     }
   }
   return list;
@@ -188,31 +192,32 @@ PW_FUNCTION RayAnswer trace_ray(PW_WALK_PARAMETER GridConstants grid, TraceConst
   // Stages 0 to 2 look where the ray has got to, and ahead of there; stage 3 at its origin.
   const int first_stage = rules.advance != 0 ? 0 : 3;
   int stage = first_stage;
-  // Every turn either walks, of which there are max_tries, or moves to the next of four stages.
-  while (int(answer.tries) < max_tries && stage < 4) {
-    real t_cell = stage == 3 ? real(0) : t + real(stage) * ahead;
-    CandidateList list = cell_candidates(grid, dials, rules, chosen_from + d * t_cell, d);
-    int chosen = -1, doubtful = -1;
-    for (int k = 0; k < list.count && chosen < 0; ++k) {
-      int id = list.probe[k];
-      bool failed = false;
-      for (int f = 0; f < failures; ++f) failed = failed || (failed_probe[f] == id && (rules.retry == 0 || failed_t[f] >= t));
-      if (failed) continue;
-      if (answer.tries == 0u || rules.start_test == 0) {
-        chosen = id;
-        break;
+  // Every turn walks once. Stages are gone through within it, so that rays that are traced side by side walk together.
+  while (int(answer.tries) < max_tries) {
+    int chosen = -1;
+    for (; chosen < 0 && stage < 4; stage += chosen < 0 ? 1 : 0) {
+      real t_cell = stage == 3 ? real(0) : t + real(stage) * ahead;
+      CellCandidates cell = cell_candidates(grid, dials, rules, chosen_from + d * t_cell, d);
+      int doubtful = -1;
+      for (int k = best_candidate(cell); k < PW_CANDIDATES && chosen < 0; k = best_candidate(cell)) {
+        int id = candidate_probe(cell, k);
+        bool failed = false;
+        for (int f = 0; f < failures; ++f) failed = failed || (failed_probe[f] == id && (rules.retry == 0 || failed_t[f] >= t));
+        if (!failed) {
+          int seen = 2;
+          if (answer.tries > 0u && rules.start_test != 0) {
+            ProbeRecord probe = pw_probe(grid, id);
+            real3 x = relative_origin(probe, origin_hi, origin_lo) + d * (t + PW_START_AHEAD * ahead);
+            seen = start_test(probe, x, real(dials.start_margin), answer.lookups);
+          }
+          if (seen == 2) chosen = id;
+          if (seen == 1 && doubtful < 0) doubtful = id;
+        }
+        strike_candidate(cell, id);
       }
-      ProbeRecord probe = pw_probe(grid, id);
-      real3 x = relative_origin(probe, origin_hi, origin_lo) + d * (t + PW_START_AHEAD * ahead);
-      int seen = start_test(probe, x, real(dials.start_margin), answer.lookups);
-      if (seen == 2) chosen = id;
-      if (seen == 1 && doubtful < 0) doubtful = id;
+      if (chosen < 0) chosen = doubtful;
     }
-    if (chosen < 0) chosen = doubtful;
-    if (chosen < 0) {
-      ++stage;
-      continue;
-    }
+    if (chosen < 0) break;
     ProbeRecord probe = pw_probe(grid, chosen);
     const real t_start = rules.hand_on != 0 ? t : real(0);
     WalkState walk = PW_WALK(probe, chosen, relative_origin(probe, origin_hi, origin_lo), d, t_start, start_level, failures);
@@ -235,25 +240,27 @@ PW_FUNCTION RayAnswer trace_ray(PW_WALK_PARAMETER GridConstants grid, TraceConst
   // Nobody knows: the ray is free up to t. The probe whose surface lies nearest to the stop point lends its radiance.
   answer.t = t;
   if (rules.last_resort == kLastResortNothing) return answer;
-  CandidateList list = cell_candidates(grid, dials, rules, chosen_from + d * t, d);
+  CellCandidates cell = cell_candidates(grid, dials, rules, chosen_from + d * t, d);
   real best = PW_NEVER, nearest = PW_NEVER;
   int environment = -1, open = -1;
-  for (int k = 0; k < list.count; ++k) {
-    ProbeRecord probe = pw_probe(grid, list.probe[k]);
+  for (int k = best_candidate(cell); k < PW_CANDIDATES; k = best_candidate(cell)) {
+    int id = candidate_probe(cell, k);
+    strike_candidate(cell, id);
+    ProbeRecord probe = pw_probe(grid, id);
     real3 x = relative_origin(probe, origin_hi, origin_lo) + d * t;
     real len = abs(x.x) + abs(x.y) + abs(x.z);
     if (len < nearest) {
       nearest = len;
-      environment = list.probe[k];
+      environment = id;
     }
-    if (open < 0 && nearest_vertex_w(probe, d) <= real(0)) open = list.probe[k];
+    if (open < 0 && nearest_vertex_w(probe, d) <= real(0)) open = id;
     answer.lookups += 1u;
     if (!(len > real(0))) continue;
     real off = abs(nearest_vertex_w(probe, x) * len - real(1));
     answer.lookups += 1u;
     if (off < best) {
       best = off;
-      answer.probe = list.probe[k];
+      answer.probe = id;
     }
   }
   answer.environment = rules.last_resort == kLastResortEnvironment || !(best < PW_PLAUSIBLE);

@@ -8,262 +8,14 @@
 // What the walk guarantees on any data: it ends (every step moves on by at least one cell), it forms no NaN and no
 // infinity from finite rays and says "unknown" to others, and with the pyramid it visits the same surfaces as without,
 // bit for bit; with its planes, too, within the tolerance that makes them planes.
+#include "tracer_pieces.h"
+#include "tracer_pyramid.h"
 
-// Stands for "never" in ray parameters; finite, so that no proof rests on the device's infinities.
-#define PW_NEVER real(1e30)
-// Status of a walk beside the answers of probe_layout.h.
-#define PW_WALKING (-1)
-#define PW_CLASS_BEHIND 3  // the ray's start lies behind the probe's surface
-// The first look is at entries at most this many times as wide as the way through the octant.
-#ifndef PW_FIRST_LOOK
-#define PW_FIRST_LOOK real(1)
-#endif
 // Sizes of what can be walked: origins up to here from the probe, directions no longer and no shorter than these. Beyond
 // them sums and reciprocals might not be finite.
 #define PW_GREATEST_M real(1e15)
 #define PW_LONGEST real(1e6)
 #define PW_SHORTEST real(1e-6)
-
-// A piece of the ray inside one octant, in quadrant-local map coordinates [0, half]^2; everything is linear in lambda.
-struct OctantSegment {
-  real2 uv0;   // map coordinates at lambda 0, in cells
-  real2 d_uv;  // change to lambda 1
-  real w0;     // ray's 1/L1 at lambda 0
-  real dw;
-  real tw0;  // t * w at lambda 0: t = lerp(tw) / lerp(w)
-  real dtw;
-  pw_ivec2 side;  // signs of x and y: which quadrant of the map
-  bool upper;     // z > 0
-};
-
-struct WalkState {
-  int status;
-  real t;       // of a hit; of unknown and behind: where the knowledge ends
-  real t_safe;  // the ray is known to be free from its start to here
-  bool known;   // the current point has been proven to lie above the surface
-  pw_uint lookups;
-  // Of a hit: the plane that was met, as the p with dot(plane, p) = 1 relative to the probe; w along any direction is its
-  // product with the direction of unit L1 length. On the way: w at the piece's anchor, and slopes a cell step.
-  real3 plane;
-  real2 plane_at;  // on the way: the anchor, in the cell's unit square
-};
-
-// The piece met, in the world's terms. side: of the quadrant; upper: z > 0; corner: the cell's, quadrant-local.
-PW_FUNCTION real3 plane_of_piece(real3 piece, real2 at, real2 corner, pw_ivec2 side, bool upper, real half_n) {
-  real centre = piece.x - piece.y * (at.x + corner.x) - piece.z * (at.y + corner.y);
-  real along_u = piece.y * half_n, along_v = piece.z * half_n;
-  real pole = upper ? centre : -(centre + along_u + along_v);
-  return real3((centre + along_u) * real(side.x), (centre + along_v) * real(side.y), pole);
-}
-
-PW_FUNCTION real segment_t(OctantSegment s, real lambda) {
-  return min((s.tw0 + lambda * s.dtw) / max(s.w0 + lambda * s.dw, real(1e-30)), PW_NEVER);
-}
-
-// The same, from the far end: there 1 - lambda, of which w at infinity is a multiple, would have lost its digits.
-PW_FUNCTION real segment_t_from_end(OctantSegment s, real rest) {
-  real w_end = s.w0 + s.dw, tw_end = s.tw0 + s.dtw;
-  return min((tw_end - rest * s.dtw) / max(w_end - rest * s.dw, real(1e-30)), PW_NEVER);
-}
-
-// Highest level of a probe's pyramid; -1: it has none.
-PW_FUNCTION int pyramid_top(int n_log2) { return n_log2 < 4 ? -1 : ((n_log2 - 4) >> 1) * 2 + 1; }
-
-// Where the pyramid begins, in words of the geometry block.
-PW_FUNCTION int pyramid_begin(int n) { return ((n + 1) * (n + 1) + 7) & ~7; }
-
-// Offset of level 1, 3, 5 .. in the pyramid, in words: the levels before it have n^2/8 + n^2/128 + ...
-PW_FUNCTION int pyramid_offset(int n, int level) {
-  int finer = n >> (level - 1);
-  return (n * n - finer * finer) / 15 * 2;
-}
-
-// Words of the pyramid of a probe of 2^n_log2 cells a side.
-PW_FUNCTION int pyramid_words(int n_log2) { return pyramid_offset(1 << n_log2, pyramid_top(n_log2) + 2); }
-
-// The node, by its first word, that holds entry (x, y) of a level.
-PW_FUNCTION int pyramid_node(int n, int level, int x, int y) {
-  return pyramid_begin(n) + pyramid_offset(n, level) + (((y >> 2) * (n >> (level + 2)) + (x >> 2)) << 3);
-}
-PW_FUNCTION pw_uint pyramid_entry(pw_uvec2 geometry, int node, int x, int y) {
-  return (pw_word(geometry, node + ((y & 3) << 1) + ((x & 3) >> 1)) >> pw_uint((x & 1) << 4)) & 65535u;
-}
-// Not below any w of the entry's cells.
-PW_FUNCTION real entry_maximum(pw_uint entry) {
-  pw_uint code = entry & 32767u;
-  return code == 0u ? real(0) : real(pw_float_from_bits((code + kEntryBase) << 14));
-}
-
-// The ray's height above one planar piece at its two ends decides. Returns true when the walk ends here. `cut`: the
-// piece ends in mid-air, so being below it on entry means having passed through a wall that nobody has seen.
-PW_FUNCTION bool meet_piece(OctantSegment s, real t_start, real texel, bool cut, real ray_w, real f0, real f1,
-                            real lambda0, real lambda1, PW_INOUT(WalkState) state) {
-  if (!state.known) {
-    if (f0 <= real(0)) {
-      // On a hand-off the start may lie on the surface itself, a texel behind by rounding: that is a hit.
-      bool touching = t_start > real(0) && -f0 < ray_w * texel;
-      state.status = touching ? kClassHit : PW_CLASS_BEHIND;
-      state.t = max(t_start, segment_t(s, lambda0));
-      state.t_safe = state.t;
-      return true;
-    }
-    state.known = true;
-  } else if (cut && f0 <= real(0)) {
-    state.status = kClassUnknown;
-    state.t = max(t_start, segment_t(s, lambda0));
-    state.t_safe = state.t;
-    return true;
-  }
-  if (f1 <= real(0)) {
-    real tau = f0 > real(0) ? f0 / (f0 - f1) : real(0);
-    real lambda = lambda0 + (lambda1 - lambda0) * tau;
-    real rest = (real(1) - lambda1) + (lambda1 - lambda0) * (f0 > real(0) ? f1 / (f1 - f0) : real(1));
-    state.status = kClassHit;
-    state.t = max(t_start, lambda < real(0.5) ? segment_t(s, lambda) : segment_t_from_end(s, rest));
-    state.t_safe = max(t_start, segment_t(s, lambda0));
-    return true;
-  }
-  return false;
-}
-
-PW_FUNCTION real2 unpack_slopes(pw_uint word) {
-  int x = int(word << 16) >> 16, y = int(word) >> 16;
-  return real2(real(x), real(y)) * real(kSlopeStep);
-}
-
-// Fraction number k of a cut record: where along its edge the surface ends.
-PW_FUNCTION real cut_fraction(pw_uint word, int k) {
-  return (real((word >> pw_uint(6 * k)) & 63u) + real(0.5)) / real(64);
-}
-
-// Where a linear function that is a at 0 and b at 1 changes sign; 1 when it does not.
-PW_FUNCTION real sign_change(real a, real b) {
-  if ((a < real(0)) == (b < real(0))) return real(1);
-  real at = a / (a - b);
-  return at > real(0) && at < real(1) ? at : real(1);
-}
-
-// A triangle with disconnected edges: cut lines split it into regions, each with its own vertex's plane. The ray's
-// piece runs from p0 (w r0, lambda l0) to p1 in the cell's unit square. corner_w: w at v0, v1, v2.
-PW_FUNCTION bool meet_cut_triangle(pw_uvec2 geometry, int record, bool high, int mask, real3 corner_w, OctantSegment s,
-                                   real t_start, real texel, real l0, real r0, real2 p0, real l1, real r1, real2 p1,
-                                   PW_INOUT(WalkState) state) {
-  pw_uint fractions = pw_word(geometry, record);
-  real2 v0 = high ? real2(1, 1) : real2(0, 0);
-  real2 v1 = real2(1, 0);
-  real2 v2 = real2(0, 1);
-  // Barycentric coordinates of both ends.
-  real3 a, b;
-  a.y = high ? real(1) - p0.y : p0.x;
-  a.z = high ? real(1) - p0.x : p0.y;
-  a.x = real(1) - a.y - a.z;
-  b.y = high ? real(1) - p1.y : p1.x;
-  b.z = high ? real(1) - p1.x : p1.y;
-  b.x = real(1) - b.y - b.z;
-  int first = record + (high ? 5 : 2);
-  real2 slope0 = unpack_slopes(pw_word(geometry, first)) * corner_w.x;
-  real2 slope1 = unpack_slopes(pw_word(geometry, first + 1)) * corner_w.y;
-  real2 slope2 = unpack_slopes(pw_word(geometry, first + 2)) * corner_w.z;
-
-  // Two disconnected edges leave one vertex alone: one cut line through the edges' fractions, the other two vertices
-  // share a plane. Else three regions, each nearest to its vertex.
-  bool lone = mask == 5 || mask == 3 || mask == 6;
-  real break0 = real(1), break1 = real(1), break2 = real(1);
-  real h0 = real(0), h1 = real(0);
-  real lone_w = real(0), pair_w = real(0);
-  real2 lone_at = v0, lone_slope = slope0, pair_at = v1, pair_slope = slope1;
-  if (lone) {
-    real f01 = high ? real(1) - cut_fraction(fractions, 3) : cut_fraction(fractions, 0);
-    real f12 = cut_fraction(fractions, 2);
-    real f20 = high ? cut_fraction(fractions, 4) : real(1) - cut_fraction(fractions, 1);
-    // Parts of the edges to the next two vertices that the lone vertex owns.
-    real own_next, own_last;
-    real2 a2, b2;
-    real2 next_at, last_at, next_slope, last_slope;
-    real next_w, last_w;
-    if (mask == 5) {
-      own_next = f01; own_last = real(1) - f20;
-      a2 = real2(a.y, a.z); b2 = real2(b.y, b.z);
-      lone_w = corner_w.x; lone_at = v0; lone_slope = slope0;
-      next_w = corner_w.y; next_at = v1; next_slope = slope1;
-      last_w = corner_w.z; last_at = v2; last_slope = slope2;
-    } else if (mask == 3) {
-      own_next = f12; own_last = real(1) - f01;
-      a2 = real2(a.z, a.x); b2 = real2(b.z, b.x);
-      lone_w = corner_w.y; lone_at = v1; lone_slope = slope1;
-      next_w = corner_w.z; next_at = v2; next_slope = slope2;
-      last_w = corner_w.x; last_at = v0; last_slope = slope0;
-    } else {
-      own_next = f20; own_last = real(1) - f12;
-      a2 = real2(a.x, a.y); b2 = real2(b.x, b.y);
-      lone_w = corner_w.z; lone_at = v2; lone_slope = slope2;
-      next_w = corner_w.x; next_at = v0; next_slope = slope0;
-      last_w = corner_w.y; last_at = v1; last_slope = slope1;
-    }
-    own_next = max(own_next, real(0.01));
-    own_last = max(own_last, real(0.01));
-    h0 = a2.x / own_next + a2.y / own_last - real(1);
-    h1 = b2.x / own_next + b2.y / own_last - real(1);
-    break0 = sign_change(h0, h1);
-    // The pair's plane: mean slopes, corrected so that it goes through both vertices, clamped, hung at the nearer one.
-    bool next_nearer = next_w >= last_w;
-    pair_w = next_nearer ? next_w : last_w;
-    pair_at = next_nearer ? next_at : last_at;
-    real other_w = next_nearer ? last_w : next_w;
-    real2 edge = next_nearer ? last_at - next_at : next_at - last_at;
-    pair_slope = (next_slope + last_slope) * real(0.5);
-    real along = pair_slope.x * edge.x + pair_slope.y * edge.y;
-    pair_slope = pair_slope + edge * ((other_w - pair_w - along) / (edge.x * edge.x + edge.y * edge.y));
-    real steepest = max(abs(pair_slope.x), abs(pair_slope.y)), limit = real(kSlopeClamp) * pair_w;
-    if (steepest > limit) pair_slope = pair_slope * (limit / steepest);
-  } else {
-    real x = sign_change(a.x - a.y, b.x - b.y);
-    real y = sign_change(a.y - a.z, b.y - b.z);
-    real z = sign_change(a.z - a.x, b.z - b.x);
-    break0 = min(min(x, y), z);
-    break2 = max(max(x, y), z);
-    break1 = max(min(x, y), min(max(x, y), z));
-  }
-
-  real from = real(0);
-  for (int piece = 0; piece < 4; ++piece) {
-    real to = piece == 0 ? break0 : piece == 1 ? break1 : piece == 2 ? break2 : real(1);
-    if (piece > 0 && from >= real(1)) break;
-    real middle = (from + to) * real(0.5);
-    real w, plane_x, plane_y;
-    real2 at;
-    if (lone) {
-      bool alone = h0 + (h1 - h0) * middle < real(0);
-      w = alone ? lone_w : pair_w;
-      at = alone ? lone_at : pair_at;
-      plane_x = alone ? lone_slope.x : pair_slope.x;
-      plane_y = alone ? lone_slope.y : pair_slope.y;
-    } else {
-      real3 m = a + (b - a) * middle;
-      int owner = m.x >= m.y && m.x >= m.z ? 0 : m.y >= m.z ? 1 : 2;
-      w = owner == 0 ? corner_w.x : owner == 1 ? corner_w.y : corner_w.z;
-      at = owner == 0 ? v0 : owner == 1 ? v1 : v2;
-      plane_x = owner == 0 ? slope0.x : owner == 1 ? slope1.x : slope2.x;
-      plane_y = owner == 0 ? slope0.y : owner == 1 ? slope1.y : slope2.y;
-    }
-    if (w <= real(0)) {
-      state.known = true;  // sky: nothing to be behind of
-    } else {
-      real lambda0 = l0 + (l1 - l0) * from, lambda1 = l0 + (l1 - l0) * to;
-      real ray0 = r0 + (r1 - r0) * from, ray1 = r0 + (r1 - r0) * to;
-      real2 q0 = p0 + (p1 - p0) * from - at, q1 = p0 + (p1 - p0) * to - at;
-      real f0 = ray0 - (w + plane_x * q0.x + plane_y * q0.y);
-      real f1 = ray1 - (w + plane_x * q1.x + plane_y * q1.y);
-      if (meet_piece(s, t_start, texel, true, ray0, f0, f1, lambda0, lambda1, state)) {
-        state.plane = real3(w, plane_x, plane_y);
-        state.plane_at = at;
-        return true;
-      }
-    }
-    from = to;
-  }
-  return false;
-}
 
 // The walk through one octant's segment. Returns true when it ends there; state.status says how.
 PW_FUNCTION bool walk_segment(ProbeRecord probe, OctantSegment s, real t_start, int start_level,
@@ -290,175 +42,196 @@ PW_FUNCTION bool walk_segment(ProbeRecord probe, OctantSegment s, real t_start, 
   int top = min(planes ? start_level : start_level - kWithoutPlanes, pyramid_top(int(probe.n_log2)));
   top = top < 1 ? 0 : ((top - 1) | 1);
   const real way = max(abs(s.d_uv.x), abs(s.d_uv.y));
-  while (top > 1 && real(1 << top) > way * PW_FIRST_LOOK) top -= 2;
+  while (top > 1 && real(1 << top) > way) top -= 2;
   // A segment that moves by less than a cell, a ray's that runs (almost) straight away from the probe, meets three cells
   // at most, mostly one: looking at nodes first would only add to that (thesis 4.3: one look-up).
   if (way < real(1)) top = 0;
 
   int level = top, node_read = -1;
-  real lambda = real(0), w_in = s.w0;
+  real lambda = real(0), exit = real(0), w_in = s.w0, w_out = s.w0, crossing = real(0);
+  int line_x = 0, line_y = 0;
+  bool leave_x = false, last = false, passed = false;
   for (;;) {
-    // The node's far lines and where the ray leaves it.
-    int line_x = ((ix >> level) + (step_x > 0 ? 1 : 0)) << level;
-    int line_y = ((iy >> level) + (step_y > 0 ? 1 : 0)) << level;
-    real exit_x = step_x == 0 ? PW_NEVER : (real(line_x) - s.uv0.x) * per_u;
-    real exit_y = step_y == 0 ? PW_NEVER : (real(line_y) - s.uv0.y) * per_v;
-    bool leave_x = exit_x <= exit_y;
-    real crossing = leave_x ? exit_x : exit_y;
-    real exit = max(crossing, lambda);
-    bool last = !(exit < real(1));
-    if (last) exit = real(1);
-    real w_out = s.w0 + exit * s.dw;
-    real w_low = min(w_in, w_out);
-    if (level > 0) {
-      int half_nodes = half_n >> level;
-      int node_x = ix >> level, node_y = iy >> level;
-      int gx = s.side.x > 0 ? half_nodes + node_x : half_nodes - 1 - node_x;
-      int gy = s.side.y > 0 ? half_nodes + node_y : half_nodes - 1 - node_y;
-      int node = pyramid_node(n, level, gx, gy);
-      if (node != node_read) state.lookups += 1u;
-      node_read = node;
-      pw_uint entry = pyramid_entry(geometry, node, gx, gy);
-      real maximum = entry_maximum(entry);
-      if (!(maximum <= real(0)) && w_low <= maximum) {
-        if (!planes || (entry & kEntryPlanar) == 0u) {
-          level = max(level - 2, 0);
-          continue;
-        }
-        // One plane stands for all the entry's cells: that through the corners next to the map's centre.
-        int corner_x = node_x << level, corner_y = node_y << level, size = 1 << level;
-        int corner = (half_n + s.side.y * corner_y) * (n + 1) + half_n + s.side.x * corner_x;
-        real w00 = pw_word_real(geometry, corner);
-        real gu = (pw_word_real(geometry, corner + s.side.x * size) - w00) / real(size);
-        real gv = (pw_word_real(geometry, corner + s.side.y * size * (n + 1)) - w00) / real(size);
-        state.lookups += 1u;
-        real2 corner_uv = real2(real(corner_x), real(corner_y));
-        real2 q0 = s.uv0 + s.d_uv * lambda - corner_uv, q1 = s.uv0 + s.d_uv * exit - corner_uv;
-        real f0 = w_in - (w00 + gu * q0.x + gv * q0.y), f1 = w_out - (w00 + gu * q1.x + gv * q1.y);
-        if (meet_piece(s, t_start, texel, false, w_in, f0, f1, lambda, exit, state)) {
-          state.plane = plane_of_piece(real3(w00, gu, gv), real2(0, 0), corner_uv, s.side, s.upper, real(half_n));
-          return true;
-        }
-      }
-      state.known = true;
-    } else {
-      int vx = half_n + s.side.x * ix, vy = half_n + s.side.y * iy;
-      int corner = vy * (n + 1) + vx;
-      int row = s.side.y * (n + 1);
-      real w00 = pw_word_real(geometry, corner);
-      real w10 = pw_word_real(geometry, corner + s.side.x);
-      real w01 = pw_word_real(geometry, corner + row);
-      real w11 = pw_word_real(geometry, corner + row + s.side.x);
-      state.lookups += 1u;
-      real maximum = max(max(w00, w10), max(w01, w11));
-      int record = -1;
-      bool above = maximum <= real(0) || w_low > maximum * real(kCutExtension);
-      if (!above) {
-        if ((probe.flags & 1u) != 0u) {
-          int gx = s.side.x > 0 ? half_n + ix : half_n - 1 - ix;
-          int gy = s.side.y > 0 ? half_n + iy : half_n - 1 - iy;
-          int cell = gy * n + gx;
-          pw_uint mask = pw_word(geometry, masks + 2 * (cell >> 5));
-          pw_uint bit = 1u << pw_uint(cell & 31);
-          if ((mask & bit) != 0u) {
-            pw_uint before = pw_word(geometry, masks + 2 * (cell >> 5) + 1);
-            record = records + kCutRecordWords * int(before + pw_uint(bitCount(mask & (bit - 1u))));
+    // On to the next cell or planar entry that the ray comes down to. Rays that are walked side by side go through this
+    // loop first and what they have found then together: it is many times as long.
+    bool planar = false;
+    int record = -1;
+    real w00 = real(0), w10 = real(0), w01 = real(0), w11 = real(0);
+    real2 corner_uv = real2(0, 0);
+    for (;;) {
+      if (passed) {
+        if (last) return false;
+        // Step over the exit line. The other coordinate's cell is decided by the same comparisons of line parameters as
+        // a cell-by-cell walk would make, so that skipping nodes changes nothing: lines passed strictly before an x exit,
+        // before or at a y exit.
+        int old_x = ix, old_y = iy;
+        if (leave_x) {
+          ix = step_x > 0 ? line_x : line_x - 1;
+          if (step_y != 0 && level > 0) {
+            int guess = int(floor(s.uv0.y + exit * s.d_uv.y));
+            int low = step_y > 0 ? iy : line_y, high = step_y > 0 ? line_y - 1 : iy;
+            guess = min(max(guess, low), high);
+            if (step_y > 0) {
+              if (guess < high && (real(guess + 1) - s.uv0.y) * per_v < crossing) ++guess;
+              else if (guess > low && !((real(guess) - s.uv0.y) * per_v < crossing)) --guess;
+            } else {
+              if (guess > low && (real(guess) - s.uv0.y) * per_v < crossing) --guess;
+              else if (guess < high && !((real(guess + 1) - s.uv0.y) * per_v < crossing)) ++guess;
+            }
+            iy = guess;
+          }
+        } else {
+          iy = step_y > 0 ? line_y : line_y - 1;
+          if (step_x != 0 && level > 0) {
+            int guess = int(floor(s.uv0.x + exit * s.d_uv.x));
+            int low = step_x > 0 ? ix : line_x, high = step_x > 0 ? line_x - 1 : ix;
+            guess = min(max(guess, low), high);
+            if (step_x > 0) {
+              if (guess < high && (real(guess + 1) - s.uv0.x) * per_u <= crossing) ++guess;
+              else if (guess > low && !((real(guess) - s.uv0.x) * per_u <= crossing)) --guess;
+            } else {
+              if (guess > low && (real(guess) - s.uv0.x) * per_u <= crossing) --guess;
+              else if (guess < high && !((real(guess + 1) - s.uv0.x) * per_u <= crossing)) ++guess;
+            }
+            ix = guess;
           }
         }
-        above = record < 0 && w_low > maximum;
+        if (ix < 0 || iy < 0 || ix >= half_n || iy >= half_n) return false;
+        lambda = exit;
+        w_in = w_out;
+        if (level < top && (((ix ^ old_x) | (iy ^ old_y)) >> (level == 0 ? 1 : level + 2)) != 0) level = (level + 1) | 1;
       }
-      if (above) {
-        state.known = true;
+      // The node's far lines and where the ray leaves it.
+      line_x = ((ix >> level) + (step_x > 0 ? 1 : 0)) << level;
+      line_y = ((iy >> level) + (step_y > 0 ? 1 : 0)) << level;
+      real exit_x = step_x == 0 ? PW_NEVER : (real(line_x) - s.uv0.x) * per_u;
+      real exit_y = step_y == 0 ? PW_NEVER : (real(line_y) - s.uv0.y) * per_v;
+      leave_x = exit_x <= exit_y;
+      crossing = leave_x ? exit_x : exit_y;
+      exit = max(crossing, lambda);
+      last = !(exit < real(1));
+      if (last) exit = real(1);
+      w_out = s.w0 + exit * s.dw;
+      real w_low = min(w_in, w_out);
+      int gx = s.side.x > 0 ? (half_n >> level) + (ix >> level) : (half_n >> level) - 1 - (ix >> level);
+      int gy = s.side.y > 0 ? (half_n >> level) + (iy >> level) : (half_n >> level) - 1 - (iy >> level);
+      if (level > 0) {
+        int node = pyramid_node(n, level, gx, gy);
+        if (node != node_read) state.lookups += 1u;
+        node_read = node;
+        pw_uint entry = pyramid_entry(geometry, node, gx, gy);
+        real maximum = entry_maximum(entry);
+        passed = maximum <= real(0) || w_low > maximum;
+        planar = !passed && planes && (entry & kEntryPlanar) != 0u;
+        if (planar) break;
+        if (!passed) level = max(level - 2, 0);
       } else {
-        // Entry and exit in the cell's unit square; the cell's diagonal x + y = 1 parts low from high triangle.
-        real2 corner_uv = real2(real(ix), real(iy));
-        real2 p_in = s.uv0 + s.d_uv * lambda - corner_uv;
-        real2 p_out = s.uv0 + s.d_uv * exit - corner_uv;
-        real side_in = p_in.x + p_in.y - real(1), side_out = p_out.x + p_out.y - real(1);
-        bool both_low = side_in <= real(0) && side_out <= real(0);
-        bool both_high = !both_low && side_in >= real(0) && side_out >= real(0);
-        bool crosses = !(both_low || both_high);
-        bool high = both_low ? false : both_high ? true : side_in > real(0);
-        real l0 = lambda, r0 = w_in, l1 = exit, r1 = w_out;
-        real2 p0 = p_in, p1 = p_out;
-        if (crosses) {
-          real at = side_in / (side_in - side_out);
-          l1 = lambda + (exit - lambda) * at;
-          r1 = w_in + (w_out - w_in) * at;
-          p1 = p_in + (p_out - p_in) * at;
-        }
-        pw_uint flags = record < 0 ? 0u : pw_word(geometry, record + 1);
-        for (int part = 0; part < 2; ++part) {
-          int mask = int(flags >> (high ? 4u : 0u)) & 7;
-          real w_corner = high ? w11 : w00;
-          if (mask != 0) {
-            if (meet_cut_triangle(geometry, record, high, mask, real3(w_corner, w10, w01), s, t_start, texel, l0, r0,
-                                  p0, l1, r1, p1, state)) {
-              state.plane = plane_of_piece(state.plane, state.plane_at, corner_uv, s.side, s.upper, real(half_n));
-              return true;
-            }
-          } else if (w_corner <= real(0) && w10 <= real(0) && w01 <= real(0)) {
-            state.known = true;
-          } else {
-            real gu = high ? w11 - w01 : w10 - w00, gv = high ? w11 - w10 : w01 - w00;
-            real2 from_corner = high ? real2(1, 1) : real2(0, 0);
-            real2 q0 = p0 - from_corner, q1 = p1 - from_corner;
-            real f0 = r0 - (w_corner + gu * q0.x + gv * q0.y);
-            real f1 = r1 - (w_corner + gu * q1.x + gv * q1.y);
-            if (meet_piece(s, t_start, texel, false, r0, f0, f1, l0, l1, state)) {
-              state.plane = plane_of_piece(real3(w_corner, gu, gv), from_corner, corner_uv, s.side, s.upper, real(half_n));
-              return true;
+        int corner = (half_n + s.side.y * iy) * (n + 1) + half_n + s.side.x * ix;
+        int row = s.side.y * (n + 1);
+        w00 = pw_word_real(geometry, corner);
+        w10 = pw_word_real(geometry, corner + s.side.x);
+        w01 = pw_word_real(geometry, corner + row);
+        w11 = pw_word_real(geometry, corner + row + s.side.x);
+        state.lookups += 1u;
+        real maximum = max(max(w00, w10), max(w01, w11));
+        passed = maximum <= real(0) || w_low > maximum * real(kCutExtension);
+        if (!passed) {
+          if ((probe.flags & 1u) != 0u) {
+            int cell = gy * n + gx;
+            pw_uint mask = pw_word(geometry, masks + 2 * (cell >> 5));
+            pw_uint bit = 1u << pw_uint(cell & 31);
+            if ((mask & bit) != 0u) {
+              pw_uint before = pw_word(geometry, masks + 2 * (cell >> 5) + 1);
+              record = records + kCutRecordWords * int(before + pw_uint(bitCount(mask & (bit - 1u))));
             }
           }
-          if (!crosses) break;
-          crosses = false;
-          high = !high;
-          l0 = l1; r0 = r1; p0 = p1;
-          l1 = exit; r1 = w_out; p1 = p_out;
+          passed = record < 0 && w_low > maximum;
         }
+        if (!passed) break;
       }
+      if (passed) state.known = true;
     }
-    if (last) return false;
 
-    // Step over the exit line. The other coordinate's cell is decided by the same comparisons of line parameters as a
-    // cell-by-cell walk would make, so that skipping nodes changes nothing: lines passed strictly before an x exit,
-    // before or at a y exit.
-    int old_x = ix, old_y = iy;
-    if (leave_x) {
-      ix = step_x > 0 ? line_x : line_x - 1;
-      if (step_y != 0 && level > 0) {
-        int guess = int(floor(s.uv0.y + exit * s.d_uv.y));
-        int low = step_y > 0 ? iy : line_y, high = step_y > 0 ? line_y - 1 : iy;
-        guess = min(max(guess, low), high);
-        if (step_y > 0) {
-          if (guess < high && (real(guess + 1) - s.uv0.y) * per_v < crossing) ++guess;
-          else if (guess > low && !((real(guess) - s.uv0.y) * per_v < crossing)) --guess;
-        } else {
-          if (guess > low && (real(guess) - s.uv0.y) * per_v < crossing) --guess;
-          else if (guess < high && !((real(guess + 1) - s.uv0.y) * per_v < crossing)) ++guess;
-        }
-        iy = guess;
+    Meeting m;
+    m.cut = false;
+    bool ended = false;
+    if (planar) {
+      // One plane stands for all the entry's cells: that through the corners next to the map's centre.
+      int corner_x = (ix >> level) << level, corner_y = (iy >> level) << level, size = 1 << level;
+      int corner = (half_n + s.side.y * corner_y) * (n + 1) + half_n + s.side.x * corner_x;
+      real w = pw_word_real(geometry, corner);
+      real gu = (pw_word_real(geometry, corner + s.side.x * size) - w) / real(size);
+      real gv = (pw_word_real(geometry, corner + s.side.y * size * (n + 1)) - w) / real(size);
+      state.lookups += 1u;
+      corner_uv = real2(real(corner_x), real(corner_y));
+      real2 q0 = s.uv0 + s.d_uv * lambda - corner_uv, q1 = s.uv0 + s.d_uv * exit - corner_uv;
+      m.ray_w = w_in;
+      m.f0 = w_in - (w + gu * q0.x + gv * q0.y);
+      m.f1 = w_out - (w + gu * q1.x + gv * q1.y);
+      m.lambda0 = lambda;
+      m.lambda1 = exit;
+      m.piece = real3(w, gu, gv);
+      m.at = real2(0, 0);
+      if (plane_is_doubtful(s, m, w_out)) {
+        level = max(level - 2, 0);
+        passed = false;
+        continue;
       }
+      ended = ends_walk(state.known, m);
     } else {
-      iy = step_y > 0 ? line_y : line_y - 1;
-      if (step_x != 0 && level > 0) {
-        int guess = int(floor(s.uv0.x + exit * s.d_uv.x));
-        int low = step_x > 0 ? ix : line_x, high = step_x > 0 ? line_x - 1 : ix;
-        guess = min(max(guess, low), high);
-        if (step_x > 0) {
-          if (guess < high && (real(guess + 1) - s.uv0.x) * per_u <= crossing) ++guess;
-          else if (guess > low && !((real(guess) - s.uv0.x) * per_u <= crossing)) --guess;
-        } else {
-          if (guess > low && (real(guess) - s.uv0.x) * per_u <= crossing) --guess;
-          else if (guess < high && !((real(guess + 1) - s.uv0.x) * per_u <= crossing)) ++guess;
+      // Entry and exit in the cell's unit square; the cell's diagonal x + y = 1 parts low from high triangle.
+      corner_uv = real2(real(ix), real(iy));
+      real2 p_in = s.uv0 + s.d_uv * lambda - corner_uv;
+      real2 p_out = s.uv0 + s.d_uv * exit - corner_uv;
+      real side_in = p_in.x + p_in.y - real(1), side_out = p_out.x + p_out.y - real(1);
+      bool both_low = side_in <= real(0) && side_out <= real(0);
+      bool both_high = !both_low && side_in >= real(0) && side_out >= real(0);
+      bool crosses = !(both_low || both_high);
+      bool high = both_low ? false : both_high ? true : side_in > real(0);
+      real l0 = lambda, r0 = w_in, l1 = exit, r1 = w_out;
+      real2 p0 = p_in, p1 = p_out;
+      if (crosses) {
+        real at = side_in / (side_in - side_out);
+        l1 = lambda + (exit - lambda) * at;
+        r1 = w_in + (w_out - w_in) * at;
+        p1 = p_in + (p_out - p_in) * at;
+      }
+      pw_uint flags = record < 0 ? 0u : pw_word(geometry, record + 1);
+      for (int part = 0; part < 2; ++part) {
+        int mask = int(flags >> (high ? 4u : 0u)) & 7;
+        real w_corner = high ? w11 : w00;
+        m.cut = mask != 0;
+        if (m.cut) {
+          ended = meet_cut_triangle(geometry, record, high, mask, real3(w_corner, w10, w01), l0, r0, p0, l1, r1, p1,
+                                    state.known, m);
+        } else if (w_corner > real(0) || w10 > real(0) || w01 > real(0)) {
+          real gu = high ? w11 - w01 : w10 - w00, gv = high ? w11 - w10 : w01 - w00;
+          real2 from_corner = high ? real2(1, 1) : real2(0, 0);
+          real2 q0 = p0 - from_corner, q1 = p1 - from_corner;
+          m.ray_w = r0;
+          m.f0 = r0 - (w_corner + gu * q0.x + gv * q0.y);
+          m.f1 = r1 - (w_corner + gu * q1.x + gv * q1.y);
+          m.lambda0 = l0;
+          m.lambda1 = l1;
+          m.piece = real3(w_corner, gu, gv);
+          m.at = from_corner;
+          ended = ends_walk(state.known, m);
         }
-        ix = guess;
+        if (ended || !crosses) break;
+        state.known = state.known || l1 > l0;
+        crosses = false;
+        high = !high;
+        l0 = l1; r0 = r1; p0 = p1;
+        l1 = exit; r1 = w_out; p1 = p_out;
       }
     }
-    if (ix < 0 || iy < 0 || ix >= half_n || iy >= half_n) return false;
-    lambda = exit;
-    w_in = w_out;
-    if (level < top && (((ix ^ old_x) | (iy ^ old_y)) >> (level == 0 ? 1 : level + 2)) != 0) level = (level + 1) | 1;
+    if (ended) {
+      end_walk(s, t_start, texel, m, state);
+      state.plane = plane_of_piece(m.piece, m.at, corner_uv, s.side, s.upper, real(half_n));
+      return true;
+    }
+    state.known = state.known || exit > lambda;
+    passed = true;
   }
 }
 
@@ -475,18 +248,32 @@ PW_FUNCTION real octant_sign(bool crosses, real t, real t_start, real x, real d)
   return !crosses ? (x < real(0) ? real(-1) : real(1)) : t > t_start ? -forward : forward;
 }
 
+// The octant that the ray x + t d is in from t_start on, as signs, and when it crosses each axis' plane after that (else
+// PW_NEVER). Signs come from comparing crossing times, never from evaluating points.
+PW_FUNCTION void first_octant(real3 x, real3 d, real t_start, PW_OUT(real3) t_cross, PW_OUT(real3) s) {
+  real t_axis;
+  bool crosses_x = axis_crossing(x.x, d.x, t_axis); t_cross.x = t_axis;
+  bool crosses_y = axis_crossing(x.y, d.y, t_axis); t_cross.y = t_axis;
+  bool crosses_z = axis_crossing(x.z, d.z, t_axis); t_cross.z = t_axis;
+  s.x = octant_sign(crosses_x, t_cross.x, t_start, x.x, d.x);
+  s.y = octant_sign(crosses_y, t_cross.y, t_start, x.y, d.y);
+  s.z = octant_sign(crosses_z, t_cross.z, t_start, x.z, d.z);
+  if (!crosses_x || t_cross.x <= t_start) t_cross.x = PW_NEVER;
+  if (!crosses_y || t_cross.y <= t_start) t_cross.y = PW_NEVER;
+  if (!crosses_z || t_cross.z <= t_start) t_cross.z = PW_NEVER;
+}
+
+// Across an axis' plane; -1: none.
+PW_FUNCTION void next_octant(int axis, PW_INOUT(real3) t_cross, PW_INOUT(real3) s) {
+  if (axis == 0) { t_cross.x = PW_NEVER; s.x = -s.x; }
+  if (axis == 1) { t_cross.y = PW_NEVER; s.y = -s.y; }
+  if (axis == 2) { t_cross.z = PW_NEVER; s.z = -s.z; }
+}
+
 // Walks the ray x + t d, t >= t_start, through the probe's map. x: origin relative to the probe. start_level: pyramid
-// level of the first look, 0 = cell by cell, + kWithoutPlanes for the very answers of cell by cell. Signs come from
-// comparing crossing times, never from evaluating points.
+// level of the first look, 0 = cell by cell, + kWithoutPlanes for the very answers of cell by cell.
 PW_FUNCTION WalkState walk_probe(ProbeRecord probe, real3 x, real3 d, real t_start, int start_level) {
-  WalkState state;
-  state.status = PW_WALKING;
-  state.t = PW_NEVER;
-  state.t_safe = t_start;
-  state.known = false;
-  state.lookups = 0u;
-  state.plane = real3(0);
-  state.plane_at = real2(0, 0);
+  WalkState state = walk_state(PW_WALKING, PW_NEVER, t_start);
   const real half_n = real(1 << int(probe.n_log2 - 1u));
   const real l_min = real(probe.l_min_m);
   // Of a ray whose numbers are none nothing is known; the comparisons fail for NaN, too.
@@ -500,17 +287,7 @@ PW_FUNCTION WalkState walk_probe(ProbeRecord probe, real3 x, real3 d, real t_sta
   }
 
   real3 t_cross, s;
-  real t_axis;
-  bool crosses_x = axis_crossing(x.x, d.x, t_axis); t_cross.x = t_axis;
-  bool crosses_y = axis_crossing(x.y, d.y, t_axis); t_cross.y = t_axis;
-  bool crosses_z = axis_crossing(x.z, d.z, t_axis); t_cross.z = t_axis;
-  s.x = octant_sign(crosses_x, t_cross.x, t_start, x.x, d.x);
-  s.y = octant_sign(crosses_y, t_cross.y, t_start, x.y, d.y);
-  s.z = octant_sign(crosses_z, t_cross.z, t_start, x.z, d.z);
-  if (!crosses_x || t_cross.x <= t_start) t_cross.x = PW_NEVER;
-  if (!crosses_y || t_cross.y <= t_start) t_cross.y = PW_NEVER;
-  if (!crosses_z || t_cross.z <= t_start) t_cross.z = PW_NEVER;
-
+  first_octant(x, d, t_start, t_cross, s);
   real t_a = t_start;
   int crossed = -1;  // axis whose plane the segment starts on
   for (int k = 0; k < 4; ++k) {
@@ -576,9 +353,7 @@ PW_FUNCTION WalkState walk_probe(ProbeRecord probe, real3 x, real3 d, real t_sta
       t_a = t_b;
     }
     crossed = axis;
-    if (axis == 0) { t_cross.x = PW_NEVER; s.x = -s.x; }
-    if (axis == 1) { t_cross.y = PW_NEVER; s.y = -s.y; }
-    if (axis == 2) { t_cross.z = PW_NEVER; s.z = -s.z; }
+    next_octant(axis, t_cross, s);
   }
   // Every finite point of the ray was proven to lie above the surface.
   state.status = kClassMiss;

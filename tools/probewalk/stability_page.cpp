@@ -68,6 +68,8 @@ std::string tally_cells(const CaseTally& tally) {
                  tally.lookups_max);
   html += disagreements(tally.float_flat);
   fmt::format_to(std::back_inserter(html), "<td>{}</td>", error_text(tally.float_flat.errors.percentile(0.99)));
+  html += disagreements(tally.double_planes);
+  fmt::format_to(std::back_inserter(html), "<td>{}</td>", error_text(tally.double_planes.errors.max()));
   html += disagreements(tally.float_double);
   fmt::format_to(std::back_inserter(html), "<td>{}</td><td>{}</td>",
                  error_text(tally.float_double.errors.percentile(0.99)), error_text(tally.float_double.errors.max()));
@@ -88,18 +90,19 @@ std::string tally_cells(const CaseTally& tally) {
 std::string table(const std::vector<CaseResult>& results) {
   std::string html =
       "<div class=\"scroll\"><table>\n<tr><th></th><th class=\"group\" colspan=\"6\">sound</th>"
-      "<th class=\"group\" colspan=\"2\">planes</th><th class=\"group\" colspan=\"3\">float against double</th><th "
+      "<th class=\"group\" colspan=\"4\">planes</th><th class=\"group\" colspan=\"3\">float against double</th><th "
       "class=\"group\" colspan=\"2\">device against float</th>"
       "<th class=\"group\" colspan=\"5\">against brute force</th></tr>\n"
       "<tr><th>case</th><th>rays</th><th>NaN</th><th>endless</th><th>pyramid changes</th><th>look-ups, "
       "mean</th><th>max</th>"
-      "<th>beyond ties</th><th>change p99</th><th>beyond ties</th><th>error p99</th><th>worst</th><th>beyond "
+      "<th>beyond ties</th><th>change p99</th><th>in double beyond ties</th><th>worst change</th><th>beyond "
+      "ties</th><th>error p99</th><th>worst</th><th>beyond "
       "ties</th><th>other bits</th>"
       "<th>rays</th><th>float beyond ties</th><th>double beyond ties</th><th>error p99</th><th>worst</th></tr>\n";
   std::string place;
   for (const CaseResult& result : results) {
     const std::string here = fmt::format("{}, {} cells a side", result.place, result.cells);
-    if (here != place) html += "<tr class=\"place\"><td colspan=\"19\">" + html_escaped(here) + "</td></tr>\n";
+    if (here != place) html += "<tr class=\"place\"><td colspan=\"21\">" + html_escaped(here) + "</td></tr>\n";
     place = here;
     html += "<tr><td class=\"case\">" + html_escaped(result.hard.name) + "<span class=\"soft\">" +
             html_escaped(result.hard.says) + "</span></td>" + tally_cells(result.tally) + "</tr>\n";
