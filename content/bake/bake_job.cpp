@@ -10,9 +10,10 @@
 #include <vector>
 
 #include "content/bake/bake_estimate.h"
-#include "content/bake/bake_probe.h"
 #include "content/bake/bake_state.h"
 #include "content/bake/exposure.h"
+#include "content/bake/map_store.h"
+#include "content/bake/plan/plan_report.h"
 #include "content/bake/plan_picture.h"
 #include "content/error.h"
 #include "content/pack/pack_format.h"
@@ -45,6 +46,15 @@ void check_options(const BakeOptions& options) {
   check_side(options.resolution, "--resolution");
   if (options.radiance_resolution != 0) check_side(options.radiance_resolution, "--radiance-resolution");
   check_side(options.coarse_resolution, "the coarse level's resolution");
+  if (options.target.error < 0.0 || options.target.error >= 1.0 || !std::isfinite(options.target.error)) {
+    throw BadUsage(fmt::format("--error {} is not a share between 0 and 1; 0.05 is a good start", options.target.error));
+  }
+  if (options.target.error > 0.0 && options.target.budget_bytes > 0) {
+    throw BadUsage("--error and --budget ask the same question the two ways round; give one of them");
+  }
+  if (options.target.asked() && options.placement.spacing_m != 0.0) {
+    throw BadUsage("--spacing is for grids; with --error or --budget probes stand where they are needed");
+  }
   if (options.pack.extension() != ".probes") {
     throw BadUsage(fmt::format("a pack's name ends in .probes, this one does not: {}", options.pack.string()));
   }
@@ -54,9 +64,12 @@ void check_options(const BakeOptions& options) {
   }
 }
 
+LevelSize fine_size(const BakeOptions& options) {
+  return {options.resolution, options.radiance_resolution ? options.radiance_resolution : options.resolution};
+}
+
 // Coarse to fine. A fine level no finer than the coarse one is the only one.
-std::vector<LevelSize> level_sizes(const BakeOptions& options) {
-  const LevelSize fine{options.resolution, options.radiance_resolution ? options.radiance_resolution : options.resolution};
+std::vector<LevelSize> level_sizes(const BakeOptions& options, LevelSize fine) {
   const LevelSize coarse{std::min(options.coarse_resolution, fine.geometry), std::min(options.coarse_resolution, fine.radiance)};
   if (coarse.geometry == fine.geometry && coarse.radiance == fine.radiance) return {fine};
   return {coarse, fine};
@@ -72,7 +85,12 @@ std::string hash_options(const BakeOptions& options, const Scene& scene) {
       options.placement.spacing_m, options.placement.max_probes, options.light.samples, options.light.bounces,
       options.light.cache_spacing_m, options.light.seed, scene.scale, options.load.recentre, options.start_m.has_value(),
       start.x, start.y, start.z, options.isa);
-  return content_hash(std::as_bytes(std::span(text)));
+  const PlanTarget& target = options.target;
+  const std::string planned = target.asked() ? fmt::format(" error {:a} budget {} most {} {} {}", target.error,
+                                                           target.budget_bytes, target.most_probes, target.most_geometry,
+                                                           target.most_radiance) : "";
+  const std::string all = text + planned;
+  return content_hash(std::as_bytes(std::span(all)));
 }
 
 glm::dvec3 on_lattice(glm::dvec3 p) { return glm::round(p * kPositionSteps_per_m) / kPositionSteps_per_m; }
@@ -81,14 +99,13 @@ class BakeJob {
  public:
   BakeJob(const BakeOptions& options, Progress& progress)
       : options_(options), progress_(progress), scene_(load_scene(options.scene_file, options.load)),
-        rays_(scene_, options.isa), levels_(level_sizes(options)) {}
+        rays_(scene_, options.isa), levels_(level_sizes(options, fine_size(options))) {}
 
   BakeReport run() {
     const auto start = std::chrono::steady_clock::now();
     describe_scene();
-    find_places();
-    const std::vector<bool> wanted = wanted_rooms();
-    note_estimate(wanted);
+    find_space_and_tour();
+    if (!options_.target.asked()) place();
     const std::string key_text = manifest_.scene_hash + manifest_.options_hash;
     const BakeState state(options_.pack.string() + ".partial", content_hash(std::as_bytes(std::span(key_text))));
     const LightField light(scene_, rays_, options_.light, progress_, state.load_light());
@@ -96,12 +113,15 @@ class BakeJob {
     const Exposure exposure = choose_exposure(light, tour_);
     manifest_.radiance_scale = exposure.radiance_scale;
     manifest_.exposure_ev = exposure.exposure_ev;
-    bake_rooms(light, state, wanted);
+    MapStore maps(rays_, light, static_cast<float>(manifest_.radiance_scale), state);
+    if (options_.target.asked()) plan(light, exposure, maps);
+    bake_rooms(maps, state, wanted_);
+    report_.rays += maps.rays_cast();
     report_.rays += light.rays_cast();
     report_.seconds = seconds_since(start);
     report_.rooms = manifest_.rooms.size();
     report_.probes = manifest_.probe_positions_m.size();
-    report_.levels = levels_.size();
+    for (const RoomEntry& room : manifest_.rooms) report_.levels = std::max(report_.levels, room.levels.size());
     report_.bytes_disk = manifest_.bytes_disk();
     report_.bytes_device = manifest_.bytes_device();
     return report_;
@@ -127,23 +147,57 @@ class BakeJob {
     for (const std::string& warning : scene_.warnings) progress_.note("warning: " + warning);
   }
 
-  void find_places() {
+  void find_space_and_tour() {
     SpaceOptions space_options;
     space_options.start_m = options_.start_m;
-    Space space = find_space(scene_, rays_, space_options, progress_);
-    Placement placement = place_probes(scene_, rays_, space, options_.placement);
+    space_ = find_space(scene_, rays_, space_options, progress_);
+    manifest_.start = space_.start;
+    tour_ = space_.tour;
+    if (tour_.empty()) tour_.push_back(space_.start);
+    manifest_.tour = tour_;
+  }
+
+  // By the grid and the sizes of the options.
+  void place() {
+    Placement placement = place_probes(scene_, rays_, space_, options_.placement);
     if (placement.sites.empty()) {
       throw BadInput(fmt::format("{}: there is no place for a probe; give --start x,y,z inside the scene or --scale",
                                  options_.scene_file.string()));
     }
     if (!placement.statement.empty()) progress_.note(placement.statement);
-    plan_ = draw_plan(space, placement);
-    for (const std::string& warning : space.warnings) {
+    stand(std::move(placement));
+    wanted_ = wanted_rooms();
+    note_estimate(wanted_);
+  }
+
+  // By need.
+  void plan(const LightField& light, const Exposure& exposure, MapStore& maps) {
+    const HeadSpace heads(scene_, rays_, space_);
+    PlanTarget target = options_.target;
+    target.coarse_side = options_.coarse_resolution;
+    report_.planned = plan_bake(space_, heads, rays_, light, exposure, maps, target, progress_);
+    const Plan& planned = *report_.planned;
+    Placement placement;
+    placement.grid = planned.grid;
+    for (std::size_t k = 0; k < planned.rooms.size(); ++k) {
+      for (const glm::dvec3& position : planned.rooms[k].probes_m) placement.sites.push_back({position, int(k)});
+    }
+    for (std::string& statement : shortfalls(planned)) {
+      progress_.note("warning: " + statement);
+      manifest_.warnings.push_back(std::move(statement));
+    }
+    stand(std::move(placement));
+    wanted_ = wanted_rooms();
+  }
+
+  void stand(Placement placement) {
+    plan_ = draw_plan(space_, placement);
+    for (const std::string& warning : space_.warnings) {
       progress_.note("warning: " + warning);
       manifest_.warnings.push_back(warning);
     }
-    for (std::size_t k = 0; k < space.rooms.size(); ++k) {
-      const RoomRegion& region = space.rooms[k];
+    for (std::size_t k = 0; k < space_.rooms.size(); ++k) {
+      const RoomRegion& region = space_.rooms[k];
       RoomEntry room;
       room.id = region.id;
       room.name = region.name;
@@ -157,12 +211,12 @@ class BakeJob {
       manifest_.rooms.push_back(std::move(room));
     }
     manifest_.grid = std::move(placement.grid);
-    manifest_.portals = std::move(space.portals);
-    manifest_.floor = std::move(space.floor);
-    manifest_.start = space.start;
-    tour_ = space.tour;
-    if (tour_.empty()) tour_.push_back(space.start);
-    manifest_.tour = tour_;
+    manifest_.portals = std::move(space_.portals);
+    manifest_.floor = std::move(space_.floor);
+  }
+
+  std::vector<LevelSize> levels_of(std::size_t room) const {
+    return report_.planned ? level_sizes(options_, report_.planned->rooms[room].size) : levels_;
   }
 
   // By room: whether it is baked. With --only-room the other rooms' chunks come from the pack that is there.
@@ -206,18 +260,26 @@ class BakeJob {
                                static_cast<double>(estimate.bytes_disk) / (1 << 20)));
   }
 
-  void bake_rooms(const LightField& light, const BakeState& state, const std::vector<bool>& wanted) {
+  void bake_rooms(MapStore& maps, const BakeState& state, const std::vector<bool>& wanted) {
     PackWriter writer(options_.pack);
     std::uint64_t texels = 0;
-    for (const LevelSize& size : levels_) texels += probes_in(wanted) * size.radiance * size.radiance;
+    for (std::size_t k = 0; k < manifest_.rooms.size(); ++k) {
+      if (!wanted[k]) continue;
+      for (const LevelSize& size : levels_of(k)) texels += std::uint64_t(manifest_.rooms[k].probe_count) * size.radiance * size.radiance;
+    }
     progress_.begin("probes", texels, "texels");
     for (std::size_t k = 0; k < manifest_.rooms.size(); ++k) {
       RoomEntry& room = manifest_.rooms[k];
       if (!wanted[k] || room.probe_count == 0) continue;
-      for (const LevelSize& size : levels_) room.levels.push_back(bake_level(light, state, room, size, writer));
+      for (const LevelSize& size : levels_of(k)) room.levels.push_back(bake_level(maps, room, size, writer));
+      if (report_.planned && report_.planned->rooms[k].held_back.measured) {
+        room.levels.back().error = report_.planned->rooms[k].held_back.worst();
+      }
     }
     report_.texels = done_texels_;
-    if (baked_texels_ > 0) report_.seconds_per_million_texels = baking_seconds_ * 1e6 / static_cast<double>(baked_texels_);
+    if (maps.baked_texels() > 0) {
+      report_.seconds_per_million_texels = maps.baking_seconds() * 1e6 / static_cast<double>(maps.baked_texels());
+    }
     if (all_cells_ > 0) report_.connected_fraction = 1.0 - static_cast<double>(cut_cells_) / static_cast<double>(all_cells_);
     if (sees_sky_) add_feature("sky");
     if (cut_cells_ > 0) add_feature("cuts");
@@ -225,10 +287,17 @@ class BakeJob {
     state.remove();
     report_.plan = fs::path(options_.pack).replace_extension(".plan.png");
     write_png(report_.plan, plan_);
+    const fs::path plan_file = fs::path(options_.pack).replace_extension(".plan.json");
+    if (report_.planned) {
+      report_.plan_file = plan_file;
+      write_file_atomically(plan_file, plan_json(*report_.planned));
+    } else {
+      std::error_code ignored;  // that of an earlier pack of this name
+      fs::remove(plan_file, ignored);
+    }
   }
 
-  LevelEntry bake_level(const LightField& light, const BakeState& state, const RoomEntry& room, LevelSize size,
-                        PackWriter& writer) {
+  LevelEntry bake_level(MapStore& maps, const RoomEntry& room, LevelSize size, PackWriter& writer) {
     RoomLevel level;
     level.origin_m = room.origin_m;
     LevelEntry entry;
@@ -236,7 +305,8 @@ class BakeJob {
     entry.radiance_size = static_cast<std::uint32_t>(size.radiance);
     for (std::uint32_t k = 0; k < room.probe_count; ++k) {
       stop_if_asked();
-      level.probes.push_back(bake_probe(light, state, room.first_probe + k, size));
+      const glm::dvec3 position = manifest_.probe_positions_m[room.first_probe + k];
+      level.probes.push_back({maps.geometry(position, size.geometry), maps.radiance(position, size.radiance)});
       const ProbeMap& probe = level.probes.back();
       const std::size_t cut = count_cut_cells(probe.geometry);
       cut_cells_ += cut;
@@ -251,20 +321,6 @@ class BakeJob {
     entry.bytes_disk = chunk.size();
     entry.chunk = writer.add_chunk(chunk);
     return entry;
-  }
-
-  ProbeMap bake_probe(const LightField& light, const BakeState& state, std::uint32_t index, LevelSize size) {
-    const glm::dvec3 position = manifest_.probe_positions_m[index];
-    if (std::optional<ProbeMap> kept = state.load(index, position, size.geometry, size.radiance)) return std::move(*kept);
-    const auto start = std::chrono::steady_clock::now();
-    ProbeMap map;
-    map.geometry = bake_geometry(rays_, position, size.geometry, &report_.rays);
-    map.radiance = bake_radiance(rays_, light, position, size.radiance, static_cast<float>(manifest_.radiance_scale),
-                                 &report_.rays);
-    baking_seconds_ += seconds_since(start);
-    baked_texels_ += std::uint64_t(size.radiance) * size.radiance;
-    state.store(index, map);
-    return map;
   }
 
   void stop_if_asked() const {
@@ -285,11 +341,12 @@ class BakeJob {
   const RayScene rays_;
   const std::vector<LevelSize> levels_;
   Manifest manifest_;
+  Space space_;
+  std::vector<bool> wanted_;  // rooms that are baked now
   std::vector<Pose> tour_;
   ImageRgb8 plan_;
   BakeReport report_;
-  double baking_seconds_ = 0.0;  // of the probes baked now, without those kept from before
-  std::uint64_t baked_texels_ = 0, done_texels_ = 0, cut_cells_ = 0, all_cells_ = 0;
+  std::uint64_t done_texels_ = 0, cut_cells_ = 0, all_cells_ = 0;
   bool sees_sky_ = false;
 };
 

@@ -9,6 +9,7 @@
 
 #include "content/bake/light_field.h"
 #include "content/bake/placement.h"
+#include "content/bake/plan/planner.h"
 #include "content/progress.h"
 #include "content/scene/scene.h"
 
@@ -22,6 +23,8 @@ struct BakeOptions {
   int radiance_resolution = 0;     // 0 = as resolution
   int coarse_resolution = 128;     // level 0
   PlacementOptions placement;
+  // When asked for, it chooses places and sizes instead of `placement` and the resolutions, which are its limits then.
+  PlanTarget target;
   LightOptions light;
   std::optional<glm::dvec3> start_m;
   std::string only_room;           // bake this room's chunks anew, keep the rest of an existing pack
@@ -38,6 +41,8 @@ struct BakeReport {
   std::uint64_t bytes_disk = 0;
   std::uint64_t bytes_device = 0;
   double connected_fraction = 0.0;  // of cells
+  std::optional<Plan> planned;      // when a target was asked for
+  std::filesystem::path plan_file;  // the same as JSON, beside the pack; empty without
   std::filesystem::path plan;       // picture from above beside the pack: floors, rooms, probes, tour
 };
 

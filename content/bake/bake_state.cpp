@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cstring>
+#include <type_traits>
 #include <span>
 #include <vector>
 
@@ -18,35 +19,47 @@ namespace {
 
 constexpr const char* kKeyFile = "bake-key";
 constexpr const char* kLightFile = "light-cache";
+constexpr const char* kGeometryFile = "geometry";
+constexpr const char* kRadianceFile = "radiance";
 constexpr std::uint64_t kLightFileBytes = 64u << 20;
 constexpr std::size_t kHashBytes = 32;
 constexpr std::uint64_t kKeyFileBytes = 4096;
 
-// Calls work(array) for each array of a probe, in the file's order.
+// Calls work(array) for each array of a map, in the file's order.
 template <typename Map, typename Work>
+  requires std::is_same_v<std::remove_const_t<Map>, ProbeGeometry>
 void for_each_array(Map& map, Work&& work) {
-  work(map.geometry.w);
-  work(map.geometry.edges_horizontal);
-  work(map.geometry.edges_vertical);
-  work(map.geometry.edges_diagonal);
-  work(map.geometry.normals);
-  work(map.radiance.rgb9e5);
-  work(map.radiance.texel_w);
+  work(map.w);
+  work(map.edges_horizontal);
+  work(map.edges_vertical);
+  work(map.edges_diagonal);
+  work(map.normals);
+}
+template <typename Map, typename Work>
+  requires std::is_same_v<std::remove_const_t<Map>, ProbeRadiance>
+void for_each_array(Map& map, Work&& work) {
+  work(map.rgb9e5);
+  work(map.texel_w);
 }
 
-ProbeMap sized_map(glm::dvec3 position_m, int n, int r) {
-  ProbeMap map;
+ProbeGeometry sized_geometry(glm::dvec3 position_m, int n) {
+  ProbeGeometry map;
   const std::size_t cells = std::size_t(n) * n, vertices = std::size_t(n + 1) * (n + 1);
-  map.geometry.position_m = position_m;
-  map.geometry.n = n;
-  map.geometry.w.resize(vertices);
-  map.geometry.edges_horizontal.resize(cells + n);
-  map.geometry.edges_vertical.resize(cells + n);
-  map.geometry.edges_diagonal.resize(cells);
-  map.geometry.normals.resize(vertices);
-  map.radiance.r = r;
-  map.radiance.rgb9e5.resize(mip_chain_texels(r));
-  map.radiance.texel_w.resize(std::size_t(r) * r);
+  map.position_m = position_m;
+  map.n = n;
+  map.w.resize(vertices);
+  map.edges_horizontal.resize(cells + n);
+  map.edges_vertical.resize(cells + n);
+  map.edges_diagonal.resize(cells);
+  map.normals.resize(vertices);
+  return map;
+}
+
+ProbeRadiance sized_radiance(int r) {
+  ProbeRadiance map;
+  map.r = r;
+  map.rgb9e5.resize(mip_chain_texels(r));
+  map.texel_w.resize(std::size_t(r) * r);
   return map;
 }
 
@@ -98,16 +111,37 @@ BakeState::BakeState(fs::path folder, std::string key) : folder_(std::move(folde
   write_file_whole(folder_ / kKeyFile, bytes_of(key_));
 }
 
-fs::path BakeState::file(std::size_t probe, int n, int r) const {
-  return folder_ / fmt::format("probe-{:04}-{}-{}", probe, n, r);
+fs::path BakeState::file(const char* kind, glm::dvec3 position_m, int side) const {
+  const double place[3]{position_m.x + 0.0, position_m.y + 0.0, position_m.z + 0.0};  // no -0
+  return folder_ / fmt::format("{}-{}-{}", kind, content_hash(std::as_bytes(std::span(place))).substr(0, 16), side);
 }
 
-std::optional<ProbeMap> BakeState::load(std::size_t probe, glm::dvec3 position_m, int n, int r) const {
-  ProbeMap map = sized_map(position_m, n, r);
+std::optional<ProbeGeometry> BakeState::load_geometry(glm::dvec3 position_m, int n) const {
+  ProbeGeometry map = sized_geometry(position_m, n);
+  if (!load_map(file(kGeometryFile, position_m, n), map)) return {};
+  return map;
+}
+
+std::optional<ProbeRadiance> BakeState::load_radiance(glm::dvec3 position_m, int r) const {
+  ProbeRadiance map = sized_radiance(r);
+  if (!load_map(file(kRadianceFile, position_m, r), map)) return {};
+  return map;
+}
+
+void BakeState::store(const ProbeGeometry& map) const {
+  store_map(file(kGeometryFile, map.position_m, map.n), map);
+}
+
+void BakeState::store(glm::dvec3 position_m, const ProbeRadiance& map) const {
+  store_map(file(kRadianceFile, position_m, map.r), map);
+}
+
+template <typename Map>
+bool BakeState::load_map(const fs::path& file, Map& map) const {
   std::size_t expected = kHashBytes;
   for_each_array(map, [&](const auto& array) { expected += std::as_bytes(std::span(array)).size(); });
-  const std::vector<std::byte> bytes = read_hashed(file(probe, n, r), expected);
-  if (bytes.size() != expected) return {};
+  const std::vector<std::byte> bytes = read_hashed(file, expected);
+  if (bytes.size() != expected) return false;
   const std::span<const std::byte> payload = std::span(bytes).subspan(kHashBytes);
   std::size_t at = 0;
   for_each_array(map, [&](auto& array) {
@@ -115,16 +149,17 @@ std::optional<ProbeMap> BakeState::load(std::size_t probe, glm::dvec3 position_m
     std::memcpy(out.data(), payload.data() + at, out.size());
     at += out.size();
   });
-  return map;
+  return true;
 }
 
-void BakeState::store(std::size_t probe, const ProbeMap& map) const {
+template <typename Map>
+void BakeState::store_map(const fs::path& file, const Map& map) const {
   std::vector<std::byte> bytes(kHashBytes);
   for_each_array(map, [&](const auto& array) {
     const std::span<const std::byte> part = std::as_bytes(std::span(array));
     bytes.insert(bytes.end(), part.begin(), part.end());
   });
-  write_hashed(file(probe, map.geometry.n, map.radiance.r), std::move(bytes));
+  write_hashed(file, std::move(bytes));
 }
 
 std::vector<glm::vec3> BakeState::load_light() const {
@@ -149,7 +184,8 @@ void BakeState::remove() const {
   std::vector<fs::path> ours;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder_, error)) {
     const std::string name = entry.path().filename().string();
-    if (name == kKeyFile || name == kLightFile || name.starts_with("probe-") || name.starts_with(kPartialFilePrefix)) ours.push_back(entry.path());
+    const bool map = name.starts_with(std::string(kGeometryFile) + "-") || name.starts_with(std::string(kRadianceFile) + "-");
+    if (name == kKeyFile || name == kLightFile || map || name.starts_with(kPartialFilePrefix)) ours.push_back(entry.path());
   }
   for (const fs::path& path : ours) fs::remove(path, error);
   fs::remove(folder_, error);

@@ -1,5 +1,5 @@
-// What an interrupted bake keeps: the indirect light and finished probes, one file each, in a folder beside the pack. A file is only believed
-// when it was made by the same bake (its key) and is whole (its hash).
+// What an interrupted bake keeps: the indirect light and finished maps, one file each, in a folder beside the pack. A file
+// is only believed when it was made by the same bake (its key) and is whole (its hash).
 #pragma once
 
 #include <filesystem>
@@ -13,7 +13,7 @@ namespace probewalk {
 
 class BakeState {
  public:
-  // key: 32 hex digits that name scene and options. Probes kept by another bake are removed.
+  // key: 32 hex digits that name scene and options. What another bake kept is removed.
   BakeState(std::filesystem::path folder, std::string key);
 
   // The light cache's values (LightField::cache_values). Empty when it is not there or cannot be believed.
@@ -21,15 +21,22 @@ class BakeState {
   // Throws BadInput when the disk is full.
   void store_light(const std::vector<glm::vec3>& values) const;
 
-  // Nothing when it is not there or cannot be believed.
-  std::optional<ProbeMap> load(std::size_t probe, glm::dvec3 position_m, int n, int r) const;
-  // Throws BadInput when the disk is full.
-  void store(std::size_t probe, const ProbeMap& map) const;
+  // A map by the place it was baked from and its size. Nothing when it is not there or cannot be believed.
+  std::optional<ProbeGeometry> load_geometry(glm::dvec3 position_m, int n) const;
+  std::optional<ProbeRadiance> load_radiance(glm::dvec3 position_m, int r) const;
+  // Throw BadInput when the disk is full.
+  void store(const ProbeGeometry& map) const;
+  void store(glm::dvec3 position_m, const ProbeRadiance& map) const;
   // After the manifest is written.
   void remove() const;
 
  private:
-  std::filesystem::path file(std::size_t probe, int n, int r) const;
+  std::filesystem::path file(const char* kind, glm::dvec3 position_m, int side) const;
+  template <typename Map>
+  bool load_map(const std::filesystem::path& file, Map& map) const;
+  template <typename Map>
+  void store_map(const std::filesystem::path& file, const Map& map) const;
+
   std::filesystem::path folder_;
   std::string key_;
 };

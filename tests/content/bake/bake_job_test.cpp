@@ -116,9 +116,9 @@ TEST_F(BakeJob, GoesOnAfterAnInterruption) {
   EXPECT_THROW(bake(options("stopped"), stopping), Interrupted);
   ASSERT_TRUE(fs::exists(folder_ / "stopped.probes.partial"));
   EXPECT_FALSE(fs::exists(folder_ / "stopped.probes" / "pack.json"));
-  // One of the kept probes is damaged meanwhile: it is not believed.
+  // The kept maps are damaged meanwhile: they are not believed.
   for (const fs::directory_entry& entry : fs::directory_iterator(folder_ / "stopped.probes.partial")) {
-    if (entry.path().filename().string().starts_with("probe-0000")) {
+    if (entry.path().filename().string().starts_with("geometry-")) {
       std::fstream(entry.path(), std::ios::in | std::ios::out | std::ios::binary).seekp(100).put('\x7f');
     }
   }

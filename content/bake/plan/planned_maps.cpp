@@ -1,0 +1,80 @@
+#include "content/bake/plan/planned_maps.h"
+
+#include "content/pack/pack_io.h"
+
+namespace probewalk {
+namespace {
+
+constexpr int kTiny = 8;  // the smallest map that a chunk may hold
+
+ProbeGeometry tiny_geometry(glm::dvec3 position_m) {
+  ProbeGeometry map;
+  map.position_m = position_m;
+  map.n = kTiny;
+  map.w.assign(std::size_t(kTiny + 1) * (kTiny + 1), 0.0f);
+  map.edges_horizontal.assign(std::size_t(kTiny) * (kTiny + 1), kConnected);
+  map.edges_vertical = map.edges_horizontal;
+  map.edges_diagonal.assign(std::size_t(kTiny) * kTiny, kConnected);
+  map.normals.assign(map.w.size(), 0);
+  return map;
+}
+
+ProbeRadiance tiny_radiance() {
+  ProbeRadiance map;
+  map.r = kTiny;
+  map.rgb9e5.assign(mip_chain_texels(kTiny), 0);
+  map.texel_w.assign(std::size_t(kTiny) * kTiny, 0);
+  return map;
+}
+
+std::uint64_t bytes_on_disk(const ProbeMap& map) {
+  RoomLevel level;
+  level.origin_m = map.geometry.position_m;
+  level.probes.push_back(map);
+  return encode_chunk(level).size();
+}
+
+glm::uvec2 address_of(const std::vector<std::uint32_t>& words) {
+  const auto bits = static_cast<std::uint64_t>(reinterpret_cast<std::uintptr_t>(words.data()));
+  return {static_cast<std::uint32_t>(bits), static_cast<std::uint32_t>(bits >> 32)};
+}
+
+}  // namespace
+
+const PlannedMaps::Part& PlannedMaps::geometry(std::uint32_t probe, glm::dvec3 position_m, int n) {
+  const auto [found, is_new] = geometry_.try_emplace({probe, n});
+  Part& part = found->second;
+  if (!is_new) return part;
+  const ProbeMap map{maps_.geometry(position_m, n), tiny_radiance()};
+  DeviceProbe device = build_device_probe(map);
+  part.record = device.record;
+  part.words = std::move(device.geometry);
+  part.record.geometry_address = address_of(part.words);
+  part.bytes_disk = bytes_on_disk(map);
+  part.bytes_device = device_block_bytes(part.words);
+  return part;
+}
+
+const PlannedMaps::Part& PlannedMaps::radiance(std::uint32_t probe, glm::dvec3 position_m, int r) {
+  const auto [found, is_new] = radiance_.try_emplace({probe, r});
+  Part& part = found->second;
+  if (!is_new) return part;
+  const ProbeMap map{tiny_geometry(position_m), maps_.radiance(position_m, r)};
+  DeviceProbe device = build_device_probe(map);
+  part.record.r_log2 = device.record.r_log2;
+  part.words = std::move(device.radiance);
+  part.record.radiance_address = address_of(part.words);
+  part.bytes_disk = bytes_on_disk(map);
+  part.bytes_device = device_block_bytes(part.words);
+  return part;
+}
+
+ProbeRecord PlannedMaps::record(std::uint32_t probe, glm::dvec3 position_m, int n, int r) {
+  ProbeRecord record = geometry(probe, position_m, n).record;
+  const ProbeRecord& light = radiance(probe, position_m, r).record;
+  record.radiance_address = light.radiance_address;
+  record.r_log2 = light.r_log2;
+  return record;
+}
+
+}  // namespace probewalk

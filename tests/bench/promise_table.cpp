@@ -1,0 +1,210 @@
+// Error promised against error measured, beside uniform grids: by hand, not run by ctest.
+//   promise_table SCENE [TARGET...]
+// For each target the bake is planned and measured on views that the planner has not seen. Then grids of many numbers of
+// probes and sizes are measured on the same views: the smallest of no greater error, and the best of no more bytes. Prints
+// a line a target, and the grids' frontier.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "content/bake/map_store.h"
+#include "content/bake/placement/head_space.h"
+#include "content/bake/plan/planned_maps.h"
+#include "content/bake/plan/planner.h"
+#include "content/probe/probe_set.h"
+#include "content/scene/scene.h"
+
+namespace probewalk::bench {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::uint32_t kJudges = 40;  // number of the set of views that judge both
+constexpr double kMiB = 1 << 20;
+
+struct Measured {
+  std::string what;
+  RoomError error;
+  std::uint64_t bytes = 0;
+  double seconds = 0.0;
+};
+
+glm::uvec2 address_of(const void* memory) {
+  const auto bits = static_cast<std::uint64_t>(reinterpret_cast<std::uintptr_t>(memory));
+  return {static_cast<std::uint32_t>(bits), static_cast<std::uint32_t>(bits >> 32)};
+}
+
+class Table {
+ public:
+  explicit Table(const fs::path& file, fs::path folder)
+      : scene_(load_scene(file)), rays_(scene_), space_(find_space(scene_, rays_, {}, progress_)),
+        heads_(scene_, rays_, space_), light_(scene_, rays_, light_options(), progress_), folder_(std::move(folder)) {
+    std::vector<Pose> tour = space_.tour;
+    if (tour.empty()) tour.push_back(space_.start);
+    exposure_ = choose_exposure(light_, tour);
+    const int each = int(std::clamp<std::size_t>(1600 / space_.rooms.size(), 60, 300));
+    views_ = sample_views(space_, heads_, rays_, light_, {each * 10, each}, kJudges, progress_);
+  }
+
+  Measured plan(double target) {
+    const BakeState state(folder_ / fmt::format("plan-{}", target), "promise-table");
+    MapStore store(rays_, light_, exposure_.radiance_scale, state);
+    PlanTarget wanted;
+    wanted.error = target;
+    const Plan plan = plan_bake(space_, heads_, rays_, light_, exposure_, store, wanted, progress_);
+    PlannedMaps maps(store);
+    Measured measured;
+    std::vector<ProbeRecord> records;
+    std::size_t least = 4096, most = 0;
+    for (const PlannedRoom& room : plan.rooms) {
+      for (const glm::dvec3& position : room.probes_m) {
+        records.push_back(maps.record(std::uint32_t(records.size()), position, room.size.geometry, room.size.radiance));
+      }
+      measured.bytes += room.bytes_disk;
+      if (room.probes_m.empty()) continue;
+      least = std::min(least, std::size_t(std::min(room.size.geometry, room.size.radiance)));
+      most = std::max(most, std::size_t(std::max(room.size.geometry, room.size.radiance)));
+    }
+    measured.what = fmt::format("{} probes, {}..{}, {}", records.size(), least, most, plan.kept ? "said kept" : "said NOT kept");
+    measured.error = measure(plan.grid, records);
+    measured.seconds = plan.seconds;
+    state.remove();
+    return measured;
+  }
+
+  // Grids of up to `most` probes, with every pair of sizes.
+  std::vector<Measured> grids(std::size_t most) {
+    std::vector<Measured> all;
+    std::size_t before = 0;
+    for (const int probes : {1, 2, 4, 8, 12, 18, 26, 40, 60, 90}) {
+      if (std::size_t(probes) > most) break;
+      PlacementOptions options;
+      options.max_probes = probes;
+      const Placement placement = place_probes(scene_, rays_, space_, options);
+      if (placement.sites.size() == before) continue;
+      before = placement.sites.size();
+      const BakeState state(folder_ / "grids", "promise-table");
+      MapStore store(rays_, light_, exposure_.radiance_scale, state);
+      PlannedMaps maps(store);
+      std::map<int, double> geometry_s, radiance_s;
+      for (const int n : kSides) {
+        for (const bool light : {false, true}) {
+          const double start_s = store.baking_seconds();
+          for (std::uint32_t k = 0; k < placement.sites.size(); ++k) {
+            light ? maps.radiance(k, placement.sites[k].position_m, n) : maps.geometry(k, placement.sites[k].position_m, n);
+          }
+          (light ? radiance_s : geometry_s)[n] = store.baking_seconds() - start_s;
+        }
+      }
+      for (const int n : kSides) {
+        for (const int r : kSides) {
+          std::vector<ProbeRecord> records;
+          Measured measured;
+          for (std::uint32_t k = 0; k < placement.sites.size(); ++k) {
+            const glm::dvec3 position = placement.sites[k].position_m;
+            records.push_back(maps.record(k, position, n, r));
+            measured.bytes += maps.geometry(k, position, n).bytes_disk + maps.radiance(k, position, r).bytes_disk;
+          }
+          measured.what = fmt::format("{} probes, {} and {}", records.size(), n, r);
+          measured.error = measure(placement.grid, records);
+          measured.seconds = geometry_s[n] + radiance_s[r];
+          all.push_back(std::move(measured));
+        }
+      }
+      state.remove();
+    }
+    return all;
+  }
+
+ private:
+  static constexpr int kSides[] = {64, 128, 256, 512};
+
+  static LightOptions light_options() {
+    LightOptions options;
+    options.samples = 32;
+    options.bounces = 2;
+    return options;
+  }
+
+  RoomError measure(const ProbeGrid& grid, const std::vector<ProbeRecord>& records) const {
+    ProbeView view{grid_constants(grid, records.size()), default_dials(double(exposure_.radiance_scale))};
+    view.grid.table_address = address_of(grid.probe.data());
+    view.grid.probes_address = address_of(records.data());
+    return mean_error(measure_error(views_, view, rays_, float(exposure_.exposure_ev), space_.rooms.size()),
+                      views_.room_share);
+  }
+
+  SilentProgress progress_;
+  const Scene scene_;
+  const RayScene rays_;
+  const Space space_;
+  const HeadSpace heads_;
+  const LightField light_;
+  const fs::path folder_;
+  Exposure exposure_;
+  WalkerViews views_;
+};
+
+std::string text_of(const Measured& measured) {
+  return fmt::format("FLIP {:.4f}, lost {:.2f} %, {:.2f} MiB, {:.1f} s ({})", measured.error.flip,
+                     100.0 * measured.error.lost(), double(measured.bytes) / kMiB, measured.seconds, measured.what);
+}
+
+void run(const fs::path& file, const std::vector<double>& targets) {
+  const fs::path folder = fs::temp_directory_path() / fmt::format("promise-table-{}", file.stem().string());
+  fs::create_directories(folder);
+  Table table(file, folder);
+  std::vector<Measured> plans;
+  for (const double target : targets) {
+    plans.push_back(table.plan(target));
+    fmt::print("{} promised {:.3g}: {}; {}\n", file.stem().string(), target, text_of(plans.back()),
+               plans.back().error.worst() <= target ? "held" : "did NOT hold");
+    std::fflush(stdout);
+  }
+  const std::vector<Measured> grids = table.grids(60);
+  for (std::size_t k = 0; k < plans.size(); ++k) {
+    const Measured& plan = plans[k];
+    const Measured* equal_error = nullptr;
+    const Measured* equal_bytes = nullptr;
+    for (const Measured& grid : grids) {
+      if (grid.error.worst() <= plan.error.worst() && (!equal_error || grid.bytes < equal_error->bytes)) equal_error = &grid;
+      if (grid.bytes <= plan.bytes && (!equal_bytes || grid.error.worst() < equal_bytes->error.worst())) equal_bytes = &grid;
+    }
+    fmt::print("{} {:.3g}: grid of equal error: {}; of equal bytes: {}\n", file.stem().string(), targets[k],
+               equal_error ? fmt::format("{}: bytes x {:.2f}, its bake alone x {:.2f} of the plan's time", text_of(*equal_error),
+                                         double(equal_error->bytes) / double(plan.bytes), equal_error->seconds / plan.seconds)
+                           : std::string("none of those tried"),
+               equal_bytes ? fmt::format("{}: error x {:.2f}", text_of(*equal_bytes),
+                                         equal_bytes->error.worst() / plan.error.worst())
+                           : std::string("none is as small"));
+  }
+  fs::remove_all(folder);
+}
+
+}  // namespace
+}  // namespace probewalk::bench
+
+int main(int argc, char** argv) {
+  if (argc < 2) {
+    std::fputs("promise_table SCENE [TARGET...]\n", stderr);
+    return 2;
+  }
+  try {
+    std::vector<double> targets;
+    for (int k = 2; k < argc; ++k) targets.push_back(std::stod(argv[k]));
+    if (targets.empty()) targets = {0.15, 0.1, 0.07, 0.05};
+    probewalk::bench::run(argv[1], targets);
+    return 0;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "promise_table: %s\n", error.what());
+    return 1;
+  }
+}
