@@ -138,6 +138,11 @@ std::vector<LevelKey> OraclePolicy::want(const LevelBook& book) const {
 }
 
 ResidencyDecision OraclePolicy::decide(const Walker& /*walker*/, const LevelBook& book, std::uint64_t retired_bytes) {
+  for (std::uint32_t room = 0; step_ == 0 && room < book.rooms(); ++room) {  // what is there already may go, too
+    for (std::uint32_t level = 0; level < book.levels(room); ++level) {
+      if (book.status({room, level}) == LevelStatus::kResident) planner_.touch({room, level});
+    }
+  }
   ResidencyDecision decision;
   if (step_ % kStepsAThought == 0) wanted_ = want(book);
   decision.room = views_[step_].front().room;

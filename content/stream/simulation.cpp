@@ -7,6 +7,7 @@
 #include <deque>
 #include <map>
 #include <set>
+#include <utility>
 
 #include "content/error.h"
 #include "content/stream/plain_policies.h"
@@ -37,9 +38,11 @@ double missing_octaves(const LevelBook& book, std::span<const RoomGraph::Seen> v
 class Simulation {
  public:
   Simulation(const Manifest& manifest, StreamingPolicy& policy, const SimulationOptions& options)
-      : policy_(policy), options_(options), book_(manifest), source_(options.source) {}
+      : policy_(&policy), options_(options), book_(manifest), source_(options.source) {}
 
-  void settle(const WalkStep& step, double step_s) {
+  // By another policy, perhaps: one that knows the walk is asked for its steps alone.
+  void settle(const WalkStep& step, double step_s, StreamingPolicy& by) {
+    StreamingPolicy* const own = std::exchange(policy_, &by);
     walker_.head_m = step.head_m;
     walker_.look = step.look;
     SourceModel quick;
@@ -49,6 +52,7 @@ class Simulation {
     for (double t = 0.0; t < kSettleMost_s; t += step_s) {
       if (advance(step_s, false).settled && book_.loading() == 0) break;
     }
+    policy_ = own;
     source_ = SimulatedSource(options_.source);
     result_ = {};
     wanted_since_s_.clear();
@@ -90,7 +94,7 @@ class Simulation {
       retired_.pop_front();
     }
     const auto before = std::chrono::steady_clock::now();
-    ResidencyDecision decision = policy_.decide(walker_, book_, retired_bytes_);
+    ResidencyDecision decision = policy_->decide(walker_, book_, retired_bytes_);
     result_.decide_ns.push_back((std::chrono::steady_clock::now() - before).count());
     carry_out(decision);
     note_wants(decision);
@@ -167,7 +171,7 @@ class Simulation {
     }
   }
 
-  StreamingPolicy& policy_;
+  StreamingPolicy* policy_;
   const SimulationOptions& options_;
   LevelBook book_;
   SimulatedSource source_;
@@ -185,9 +189,11 @@ class Simulation {
 }  // namespace
 
 SimulationResult simulate(const Manifest& manifest, const SimulatedWalk& walk, const WalkViews& views,
-                          StreamingPolicy& policy, const SimulationOptions& options) {
+                          StreamingPolicy& policy, const SimulationOptions& options, StreamingPolicy* settled_by) {
   Simulation simulation(manifest, policy, options);
-  if (options.starts_settled && !walk.steps.empty()) simulation.settle(walk.steps.front(), walk.step_s);
+  if (options.starts_settled && !walk.steps.empty()) {
+    simulation.settle(walk.steps.front(), walk.step_s, settled_by != nullptr ? *settled_by : policy);
+  }
   for (std::size_t k = 0; k < walk.steps.size(); ++k) simulation.step(walk.steps[k], walk.step_s, views[k]);
   return simulation.take_result();
 }
@@ -255,11 +261,10 @@ SimulationResult simulate_policy(const std::string& policy, const Manifest& mani
   }
   std::optional<SimulationResult> best;
   for (const double horizon_s : {2.0, 8.0, 32.0}) {
-    // The settling steps before the walk are no steps of it.
-    SimulationOptions own = options;
-    own.starts_settled = false;
-    OraclePolicy oracle(graph, walk, views, own.residency, horizon_s);
-    SimulationResult result = simulate(manifest, walk, views, oracle, own);
+    // It sets out with what the product's policy has brought in.
+    Residency residency(manifest, options.residency);
+    OraclePolicy oracle(graph, walk, views, options.residency, horizon_s);
+    SimulationResult result = simulate(manifest, walk, views, oracle, options, &residency);
     if (!best || result.missing_octaves < best->missing_octaves) best = std::move(result);
   }
   return std::move(*best);

@@ -52,9 +52,10 @@ struct SimulationResult {
 
 inline constexpr double kHoleOctaves = 4.0;
 
-// `policy` is asked once a step.
+// `policy` is asked once a step; for what is there before the first step `settled_by` is asked, or the policy itself.
 SimulationResult simulate(const Manifest& manifest, const SimulatedWalk& walk, const WalkViews& views,
-                          StreamingPolicy& policy, const SimulationOptions& options);
+                          StreamingPolicy& policy, const SimulationOptions& options,
+                          StreamingPolicy* settled_by = nullptr);
 
 // A bound that no policy can beat, whatever the source: at every step the best levels of what is seen that the budget
 // holds, parts of levels allowed. Missing octaves, averaged as above.
