@@ -43,7 +43,7 @@ struct Room {
 ViewCounts counts_for(std::size_t rooms, double rays, double patches) {
   const double each = 1.0 / double(std::max<std::size_t>(1, rooms));
   return {int(std::clamp(rays * each, 500.0, 3000.0)),
-          patches > 0.0 ? int(std::clamp(patches * each, 48.0, 200.0)) : 0};
+          patches > 0.0 ? int(std::clamp(patches * each, 48.0, 300.0)) : 0};
 }
 
 class Planner {
@@ -81,8 +81,8 @@ class Planner {
       plan.held_back = mean_error(held_back, views.room_share);
       plan.held_back_rays = views.rays.size();
       plan.held_back_pictures = views.patches.size();
-      plan.kept = target_.error > 0.0 ? plan.held_back.worst() <= target_.error : bytes_disk() <= target_.budget_bytes;
-      // Every room is to keep it, so that the mean does with something to spare.
+      plan.kept = target_.error > 0.0 ? plan.held_back.bound() <= target_.error : bytes_disk() <= target_.budget_bytes;
+      // Every room is to keep it, with confidence, so that the mean does with something to spare.
       if (target_.error <= 0.0 || attempt + 1 == kHeldBackAttempts || !tighten(held_back)) break;
     }
     describe(plan, held_back);
@@ -351,9 +351,9 @@ class Planner {
     bool any = false;
     for (std::size_t k = 0; k < rooms_.size(); ++k) {
       Room& room = rooms_[k];
-      if (!held_back[k].measured || held_back[k].worst() <= target_.error || room.closed) continue;
+      if (!held_back[k].measured || held_back[k].bound() <= target_.error || room.closed) continue;
       room.target =
-          std::min(room.target, room.error.worst()) * std::clamp(target_.error / held_back[k].worst(), 0.5, 0.97);
+          std::min(room.target, room.error.worst()) * std::clamp(target_.error / held_back[k].bound(), 0.5, 0.97);
       any = true;
     }
     return any;

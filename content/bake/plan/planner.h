@@ -55,7 +55,7 @@ struct Plan {
   RoomError held_back;             // over the walkable floor
   std::size_t held_back_rays = 0, held_back_pictures = 0, candidates = 0;
   double seconds = 0.0;
-  bool kept = false;  // the promise, by the held-back views; or the budget
+  bool kept = false;  // the promise, by the held-back views with 95 % confidence; or the budget
 };
 
 // Throws Interrupted; finished maps are in the store's state then.
