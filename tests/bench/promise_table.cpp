@@ -84,7 +84,7 @@ class Table {
   std::vector<Measured> grids(std::size_t most) {
     std::vector<Measured> all;
     std::size_t before = 0;
-    for (const int probes : {1, 2, 4, 8, 12, 18, 26, 40, 60, 90}) {
+    for (const int probes : {1, 2, 4, 8, 16, 32, 60}) {
       if (std::size_t(probes) > most) break;
       PlacementOptions options;
       options.max_probes = probes;
@@ -125,7 +125,7 @@ class Table {
   }
 
  private:
-  static constexpr int kSides[] = {64, 128, 256, 512};
+  static constexpr int kSides[] = {64, 128, 256};
 
   static LightOptions light_options() {
     LightOptions options;
@@ -169,7 +169,7 @@ void run(const fs::path& file, const std::vector<double>& targets) {
                plans.back().error.worst() <= target ? "held" : "did NOT hold");
     std::fflush(stdout);
   }
-  const std::vector<Measured> grids = table.grids(60);
+  const std::vector<Measured> grids = table.grids(32);
   for (std::size_t k = 0; k < plans.size(); ++k) {
     const Measured& plan = plans[k];
     const Measured* equal_error = nullptr;
