@@ -42,17 +42,21 @@ PatchError patch_error(const EyePatch& patch, const ProbeView& probes, float exp
   const float spread_rad = float(std::numbers::pi / 180.0 / kPlanPixelsPerDegree);
   glm::vec3 hi, lo;
   split_position(patch.middle.origin_m, hi, lo);
+  int misplaced = 0;
   for (int k = 0; k < kPatchSide_px * kPatchSide_px; ++k) {
     const glm::vec3 d = patch.direction(k % kPatchSide_px, k / kPatchSide_px);
     const f32::RayAnswer answer = f32::trace_ray(probes.grid, probes.dials, hi, lo, d, kStartLevel);
     unsigned reads = 0;
     is.rgb[k] = f32::ray_radiance(probes.grid, probes.dials, answer, hi, lo, d, spread_rad, reads);
-    if (judge(answer, patch.truth_m[k]) != Judgement::kRight) places.rgb[k] = is.rgb[k];
+    if (judge(answer, patch.truth_m[k]) == Judgement::kRight) continue;
+    places.rgb[k] = is.rgb[k];
+    ++misplaced;
   }
   const ImageRgb8 reference = display_transform(should, exposure_ev);
   constexpr float kDensity = float(kPlanPixelsPerDegree);
-  return {flip_mean(reference, display_transform(is, exposure_ev), kDensity),
-          flip_mean(reference, display_transform(places, exposure_ev), kDensity)};
+  const double flip = flip_mean(reference, display_transform(is, exposure_ev), kDensity);
+  if (misplaced == 0) return {flip, 0.0};
+  return {flip, flip_mean(reference, display_transform(places, exposure_ev), kDensity)};
 }
 
 }  // namespace

@@ -39,6 +39,7 @@ Baked bake_scene(const fs::path& file, double error) {
   options.load.scale = 1.0;
   options.pack = GltfScene::folder() / "pack.probes";
   options.target.error = error;
+  options.target.effort = 0.2;
   options.target.most_geometry = options.target.most_radiance = 128;
   options.target.most_probes = 12;
   options.resolution = 64;
