@@ -41,7 +41,8 @@ EdgeSampler::EdgeSampler(const Device& device, const StorageImageSet& images, co
     : images_(images),
       options_(options),
       list_(device, list_bytes(options), BufferMemory::kDevice, VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT),
-      find_(Pipeline::compute(device, &images, spirv::k_find_edges_comp, {options.interleave})),
+      find_(Pipeline::compute(device, &images, spirv::k_find_edges_comp,
+                              {options.interleave, options.foveated ? VK_TRUE : VK_FALSE})),
       sample_(Pipeline::compute(
           device, &images,
           tracing_module(options.choice, spirv::k_sample_edges_comp, spirv::k_sample_edges_baseline_comp),

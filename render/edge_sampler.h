@@ -18,6 +18,7 @@ struct EdgeSamplerOptions {
   bool aov = false;
   std::uint32_t samples = 4;     // rays of a pixel at an edge, the first one's included: 2 or 4
   std::uint32_t interleave = 1;  // see kInterleave in trace_stereo.glsl
+  bool foveated = false;         // tiles with a ray for several pixels get no more (shaders/shared/foveation.h)
   TracerChoice choice;           // how rays are answered; its maps are named by the FrameConstants
 };
 

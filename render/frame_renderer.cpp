@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <cmath>
 #include <cstring>
 #include <deque>
 #include <stdexcept>
@@ -256,6 +257,10 @@ void FrameRenderer::write(std::span<const ViewConstants> views, const FrameSetti
   constants.frame_index = static_cast<std::uint32_t>(impl.next_frame);
   constants.near_m = settings.depth.near_m;
   constants.far_m = settings.depth.far_m;
+  if (tracer.foveation) {
+    constants.full_rate_cosine = std::cos(tracer.foveation->full_rad);
+    constants.half_rate_cosine = std::cos(tracer.foveation->half_rad);
+  }
   std::copy(views.begin(), views.end(), constants.view);
   share_choice({constants.view, views.size()});
   const Buffer& buffer = impl.slot().constants;

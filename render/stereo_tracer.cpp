@@ -45,13 +45,17 @@ StereoTracer::StereoTracer(const Device& device, const TracerOptions& options)
       pipeline_(Pipeline::compute(device, &images_,
                                   tracing_module(options.setup.choice, spirv::k_trace_stereo_comp,
                                                  spirv::k_trace_stereo_baseline_comp),
-                                  tracing_constants({options.aov ? VK_TRUE : VK_FALSE, interleave_},
+                                  tracing_constants({options.aov ? VK_TRUE : VK_FALSE, interleave_,
+                                                     options.foveation ? VK_TRUE : VK_FALSE},
                                                     options.setup.choice))) {
+  if (options.foveation) {
+    fill_.emplace(Pipeline::compute(device, &images_, spirv::k_fill_blocks_comp, {options.aov ? VK_TRUE : VK_FALSE}));
+  }
   if (options.samples != 1) {
     edges_ = std::make_unique<EdgeSampler>(
         device, images_,
         EdgeSamplerOptions{options.extent_px, options.views, options.aov, options.samples, interleave_,
-                           options.setup.choice});
+                           options.foveation.has_value(), options.setup.choice});
   }
   // The images stay in the general layout for good.
   run_commands(device, [&](VkCommandBuffer commands) {
@@ -78,6 +82,14 @@ void StereoTracer::record(VkCommandBuffer commands, VkDeviceAddress frame) const
   const std::uint32_t columns = (options_.extent_px.width + kTile - 1) / kTile;
   vkCmdDispatch(commands, columns, tile_rows(options_, interleave_), options_.views);
 
+  if (fill_) {
+    barrier.srcStageMask = barrier.dstStageMask = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
+    barrier.srcAccessMask = VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT;
+    barrier.dstAccessMask = VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT;
+    vkCmdPipelineBarrier2(commands, &dependency);
+    fill_->bind(commands, &images_, {frame});
+    vkCmdDispatch(commands, columns, (options_.extent_px.height + kTile - 1) / kTile, options_.views);
+  }
   if (edges_) edges_->record(commands, frame);
 
   barrier.srcStageMask = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;

@@ -5,9 +5,11 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 
 #include "render/device.h"
 #include "render/edge_sampler.h"
+#include "render/foveation.h"
 #include "render/image.h"
 #include "render/pipeline.h"
 #include "render/tracer_choice.h"
@@ -19,6 +21,7 @@ struct TracerOptions {
   std::uint32_t views = 2;  // 1 .. kMaxViews
   bool aov = false;         // also write class, probe and counts
   std::uint32_t samples = 1;  // rays of a pixel at an edge: 1, 2 or 4
+  std::optional<Foveation> foveation;  // rays for several pixels towards the rim
   TracerSetup setup;          // how rays are answered
 };
 
@@ -41,7 +44,7 @@ class StereoTracer {
   // R32F, metres along the ray through the pixel's centre; kMissDistance_m = miss.
   const Image& distance() const { return distance_; }
   // RGBA32UI: class, probe (0xffffffff = none) of the ray through the pixel's centre; look-ups, tries | rays << 8 |
-  // attribute reads << 16 of all its rays. One texel without options().aov.
+  // attribute reads << 16 of all its rays, 0 where foveation gave a pixel none. One texel without options().aov.
   const Image& aov() const { return aov_; }
 
  private:
@@ -50,6 +53,7 @@ class StereoTracer {
   Image radiance_, distance_, aov_;
   StorageImageSet images_;
   Pipeline pipeline_;
+  std::optional<Pipeline> fill_;  // with foveation
   std::unique_ptr<EdgeSampler> edges_;  // with more than one sample
 };
 

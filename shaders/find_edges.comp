@@ -7,12 +7,15 @@
 
 #include "shared/display_transform.h"
 #include "shared/edge_list.h"
+#include "shared/foveation.h"
 #include "shared/probe_layout.h"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
 // Groups of sample_edges.comp come in multiples of this (see kInterleave there).
 layout(constant_id = 0) const int kInterleave = 1;
+// Where a ray stands for several pixels none gets another.
+layout(constant_id = 1) const bool kFoveated = false;
 
 layout(binding = 0, rgba16f) readonly uniform image2DArray radiance_image;
 layout(binding = 1, r32f) readonly uniform image2DArray distance_image;
@@ -79,6 +82,7 @@ void main() {
   float most = max(max(contrast(here, left), contrast(here, right)), max(contrast(here, up), contrast(here, down)));
   bool is_edge = here.w >= 0.0 &&
                  (most > kStrong || (most > kSeen && (bends(left, here, right) || bends(up, here, down))));
+  is_edge = is_edge && (!kFoveated || foveation_rate(constants.view[view_index], pixel, constants) == 1);
 
   // One reservation a tile keeps the list's neighbours neighbours in the picture.
   uint place = is_edge ? atomicAdd(tile_count, 1u) : 0u;

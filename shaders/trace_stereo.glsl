@@ -1,4 +1,5 @@
 // The body of trace_stereo.comp and trace_stereo_baseline.comp.
+#include "shared/foveation.h"
 #include "shared/tracer_glsl.h"
 #include "shared/view_ray.h"
 
@@ -9,6 +10,8 @@ layout(constant_id = 0) const bool kWithAov = false;
 // 1: groups take tiles in order. T > 1: T equal parts of the dispatch take rows of tiles in turn, for software devices
 // that give each of their threads one contiguous part. The number of rows must be a multiple of T.
 layout(constant_id = 1) const int kInterleave = 1;
+// Tiles may have one ray for several pixels (foveation.h); fill_blocks.comp fills in the others.
+layout(constant_id = 2) const bool kFoveated = false;
 
 layout(binding = 0, rgba16f) writeonly uniform image2DArray radiance_image;
 layout(binding = 1, r32f) writeonly uniform image2DArray distance_image;
@@ -26,21 +29,26 @@ void main() {
   int part = rows * int(gl_NumWorkGroups.z) / kInterleave;
   row = row % part * kInterleave + row / part;
   int view_index = row / rows;
-  ivec2 pixel = ivec2(int(gl_WorkGroupID.x), row % rows) * 8 + ivec2(gl_LocalInvocationID.xy);
+  ivec2 tile_px = ivec2(int(gl_WorkGroupID.x), row % rows) * 8;
   ivec2 size_px = frame.constants.size_px;
+  ViewConstants view = frame.constants.view[view_index];
+  // A coarse tile's rays are its first lanes', so that the others' parts of the group end at once.
+  int rate = kFoveated ? foveation_rate(view, tile_px, frame.constants) : 1;
+  int side = kFoveationTile / rate, lane = int(gl_LocalInvocationIndex);
+  if (lane >= side * side) return;
+  ivec2 pixel = tile_px + ivec2(lane % side, lane / side) * rate;
   if (pixel.x >= size_px.x || pixel.y >= size_px.y) return;
 
-  ViewConstants view = frame.constants.view[view_index];
   GridConstants grid = frame.constants.grid;
   TraceConstants dials = frame.constants.trace;
-  vec3 direction = view_ray(view, pixel, size_px);
+  vec3 direction = view_ray_through(view, vec2(pixel) + 0.5 * float(rate), size_px);
   RayAnswer answer = pipeline_trace(frame.constants.baseline_address, grid, dials, view.origin_hi_m, view.origin_lo_m,
                                     direction, choice_shift(view));
   uint reads;
   vec3 radiance = pipeline_radiance(grid, dials, answer, view.origin_hi_m, view.origin_lo_m, direction,
-                                    view.pixel_angle_rad, reads);
+                                    view.pixel_angle_rad * float(rate), reads);
 
-  ivec3 texel = ivec3(pixel, view_index);
+  ivec3 texel = ivec3(block_keeper(pixel, rate, size_px), view_index);
   imageStore(radiance_image, texel, vec4(min(radiance * dials.radiance_scale, vec3(kHalfMax)), 1.0));
   imageStore(distance_image, texel, vec4(answer.t));
   if (kWithAov) {

@@ -59,6 +59,7 @@ RunInfo run_info(const WalkOptions& options, const Display& display) {
   info.method = name_of(options.choice);
   if (settings != "default") info.method += " (" + settings + ")";
   info.samples = options.samples;
+  info.foveation = options.foveation;
   info.pack = options.pack.filename().empty() ? options.pack.parent_path().filename() : options.pack.filename();
   info.build = read_build_info();
   info.started_utc = utc_now();

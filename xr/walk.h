@@ -30,6 +30,7 @@ struct WalkOptions {
   std::uint64_t budget_bytes = kUnlimitedBudget; // device memory for probes
   unsigned loader_threads = 1;
   std::uint32_t samples = 1;                     // rays of a pixel at an edge: 1, 2 or 4
+  std::string foveation = "off";                 // a name of foveation_levels()
   TracerChoice choice;                           // how rays are answered
   const BaselineMaps* maps = nullptr;            // of a choice that needs some
   std::optional<double> exposure_ev;             // default: the pack's

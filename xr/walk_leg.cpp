@@ -48,6 +48,7 @@ WalkLeg::WalkLeg(const WalkOptions& options, const Pack& pack, const Display& di
                 {.tracer = {.extent_px = source_.view_extent(),
                             .views = source_.view_count(),
                             .samples = options.samples,
+                            .foveation = foveation_of(options.foveation),
                             .setup = {options.choice, baselines_.get()}},
                  .target_format = source_.color_format(),
                  .depth_format = source_.depth_format()}),

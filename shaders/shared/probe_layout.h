@@ -116,7 +116,10 @@ struct FrameConstants {
   float far_m;
   ViewConstants view[4];
   pw_uvec2 baseline_address;  // of BaselineConstants, for trace_stereo_baseline.comp and sample_edges_baseline.comp
-  pw_uvec2 reserved0;
+  // Rays at an angle from the view's axis of at least this cosine are one a pixel; at least the next, one of 2 x 2 pixels;
+  // the rest one of 4 x 4 (foveation.h). Without foveation both are 0.
+  float full_rate_cosine;
+  float half_rate_cosine;
 };
 
 PW_SHARED_END

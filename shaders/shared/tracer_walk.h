@@ -147,6 +147,13 @@ PW_FUNCTION bool walk_segment(ProbeRecord probe, OctantSegment s, real t_start, 
           }
           passed = record < 0 && w_low > maximum;
         }
+        // By rounding only: on the fold the ray is in a cell of the octant that it comes from or goes to, which here says
+        // nothing.
+        int past_fold = ix + iy + 1 - half_n;
+        if (!passed && (s.upper ? past_fold > 0 : past_fold < 0)) {
+          passed = true;
+          continue;
+        }
         if (!passed) break;
       }
       if (passed) state.known = true;
@@ -179,13 +186,15 @@ PW_FUNCTION bool walk_segment(ProbeRecord probe, OctantSegment s, real t_start, 
       }
       ended = ends_walk(state.known, m);
     } else {
-      // Entry and exit in the cell's unit square; the cell's diagonal x + y = 1 parts low from high triangle.
+      // Entry and exit in the cell's unit square; the cell's diagonal x + y = 1 parts low from high triangle. On the fold
+      // each of the two belongs to an octant of its own.
       corner_uv = real2(real(ix), real(iy));
       real2 p_in = s.uv0 + s.d_uv * lambda - corner_uv;
       real2 p_out = s.uv0 + s.d_uv * exit - corner_uv;
       real side_in = p_in.x + p_in.y - real(1), side_out = p_out.x + p_out.y - real(1);
-      bool both_low = side_in <= real(0) && side_out <= real(0);
-      bool both_high = !both_low && side_in >= real(0) && side_out >= real(0);
+      bool on_fold = ix + iy + 1 == half_n;
+      bool both_low = on_fold ? s.upper : side_in <= real(0) && side_out <= real(0);
+      bool both_high = on_fold ? !s.upper : !both_low && side_in >= real(0) && side_out >= real(0);
       bool crosses = !(both_low || both_high);
       bool high = both_low ? false : both_high ? true : side_in > real(0);
       real l0 = lambda, r0 = w_in, l1 = exit, r1 = w_out;

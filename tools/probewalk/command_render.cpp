@@ -17,6 +17,7 @@
 #include "render/view.h"
 #include "shaders/shared/display_transform.h"
 #include "tools/probewalk/commands.h"
+#include "tools/probewalk/foveation_option.h"
 #include "tools/probewalk/method_options.h"
 #include "tools/probewalk/named_poses.h"
 #include "tools/probewalk/reference_picture.h"
@@ -42,6 +43,7 @@ struct RenderArguments {
   double ipd_m = 0.063;
   std::vector<std::string> aov;
   std::uint32_t samples = 1;
+  std::string foveation = "off";
   double ev = 0.0;
   CLI::Option* ev_option = nullptr;
   bool reference = false;
@@ -147,7 +149,8 @@ class RenderJob {
         choice_(chosen_tracer(arguments.method)),
         device_({}, {.device = common.device}),
         drawer_(pack_, device_, extent_, arguments.stereo ? 2 : 1, arguments.samples, *progress_, choice_,
-                chosen_maps(choice_, arguments.method, pack_, arguments.own_scale(), common.threads, *progress_).get()) {
+                chosen_maps(choice_, arguments.method, pack_, arguments.own_scale(), common.threads, *progress_).get(),
+                foveation_of(arguments.foveation)) {
     if (arguments.reference) {
       reference_ = std::make_unique<ReferenceCaster>(arguments.method.scene, pack_.manifest(), arguments.own_scale(),
                                                      common.threads, *progress_);
@@ -297,6 +300,7 @@ void RenderJob::count(const Still& still, nlohmann::json& report) const {
   report["hit_fraction"] = share(hits);
   report["unknown_fraction"] = share(unknown);
   report["samples"] = arguments_.samples;
+  report["foveation"] = arguments_.foveation;
   report["rays_mean"] = static_cast<double>(rays) / static_cast<double>(lookups.size());
   report["lookups_mean"] = sum / static_cast<double>(lookups.size());
   report["lookups_p99"] = *p99;
@@ -391,6 +395,7 @@ void add_render_command(CLI::App& app, CommonOptions& common) {
       ->delimiter(',')->check(CLI::IsMember(kAovNames));
   command->add_option("--samples", arguments->samples, "Rays of a pixel at an edge: 1, 2 or 4")
       ->check(CLI::IsMember({1, 2, 4}))->capture_default_str();
+  add_foveation_option(*command, arguments->foveation);
   arguments->ev_option = command->add_option("--ev", arguments->ev, "Exposure value at ISO 100 (default: the pack's)")
       ->check(CLI::Range(-30.0, 30.0));
   command->add_flag("--reference", arguments->reference, "Cast the picture at the triangles, and compare");

@@ -10,6 +10,7 @@
 
 #include "content/error.h"
 #include "tools/probewalk/commands.h"
+#include "tools/probewalk/foveation_option.h"
 #include "tools/probewalk/method_options.h"
 #include "xr/latency/run_files.h"
 #include "xr/latency/summary_json.h"
@@ -155,6 +156,7 @@ void add_walk_command(CLI::App& app, CommonOptions& common) {
   command->add_option("--samples", walk_options.samples, "Rays of a pixel at an edge: 1, 2 or 4")
       ->check(CLI::IsMember({1, 2, 4}))
       ->capture_default_str();
+  add_foveation_option(*command, walk_options.foveation);
   command->add_option("--device-budget", arguments->budget_mib, "Device memory for probes, MiB (default: unlimited)")
       ->check(CLI::Range(1ull, 1ull << 24));
   command->add_option("--report", arguments->report, "Write frames.csv, summary.json, trace.json and index.html here");

@@ -34,7 +34,8 @@ std::vector<float> along_axis(const std::vector<float>& distance_m, const ViewCo
 
 struct StillDrawer::Impl {
   Impl(const Pack& pack_in, const Device& device_in, VkExtent2D extent_px, std::uint32_t view_count,
-       std::uint32_t samples, Progress& progress_in, const TracerChoice& choice, const BaselineMaps* maps)
+       std::uint32_t samples, Progress& progress_in, const TracerChoice& choice, const BaselineMaps* maps,
+       const std::optional<Foveation>& foveation)
       : pack(pack_in),
         device(device_in),
         progress(progress_in),
@@ -44,7 +45,7 @@ struct StillDrawer::Impl {
               {.frame_slots = kFrameSlots}),
         baselines(choice.needs_maps() && maps != nullptr ? std::make_unique<BaselineStore>(device, *maps, choice) : nullptr),
         picture(device, {kFormat, extent, views, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT}),
-        renderer(device, store, {{extent, views, true, samples, {choice, baselines.get()}}, kFormat}),
+        renderer(device, store, {{extent, views, true, samples, foveation, {choice, baselines.get()}}, kFormat}),
         source(pack.path()),
         streamer(
             pack.manifest(), source,
@@ -75,8 +76,8 @@ struct StillDrawer::Impl {
 
 StillDrawer::StillDrawer(const Pack& pack, const Device& device, VkExtent2D extent_px, std::uint32_t view_count,
                          std::uint32_t samples, Progress& progress, const TracerChoice& choice,
-                         const BaselineMaps* maps)
-    : impl_(std::make_unique<Impl>(pack, device, extent_px, view_count, samples, progress, choice, maps)) {}
+                         const BaselineMaps* maps, const std::optional<Foveation>& foveation)
+    : impl_(std::make_unique<Impl>(pack, device, extent_px, view_count, samples, progress, choice, maps, foveation)) {}
 
 StillDrawer::~StillDrawer() = default;
 

@@ -174,7 +174,8 @@ const std::vector<Fact>& facts() {
        }},
       {"method",
        [](const Run& r, const Summary&) {
-         return r.info.method + (r.info.samples > 1 ? fmt::format(", {} rays a pixel at edges", r.info.samples) : "");
+         return r.info.method + (r.info.samples > 1 ? fmt::format(", {} rays a pixel at edges", r.info.samples) : "") +
+                (r.info.foveation != "off" ? ", foveation " + r.info.foveation : "");
        }},
       {"device",
        [](const Run& r, const Summary&) {

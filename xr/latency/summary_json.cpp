@@ -131,6 +131,7 @@ std::string summary_json(const Ledger& ledger, const RunInfo& info) {
                {"views", info.views},
                {"method", info.method},
                {"samples", info.samples},
+               {"foveation", info.foveation},
                {"period_ns", summary.period_ns},
                {"frames", summary.frames},
                {"warmup_frames", summary.warmup_frames},
@@ -174,6 +175,7 @@ SummaryHead parse_summary_json(std::string_view text, const std::string& file) {
   take(json, "views", info.views, file);
   take(json, "method", info.method, file);
   if (json.contains("samples")) take(json, "samples", info.samples, file);
+  if (json.contains("foveation")) take(json, "foveation", info.foveation, file);
   take(json, "warmup_frames", head.options.warmup_frames, file);
   take(json, "has_deadlines", head.options.has_deadlines, file);
   if (double cost = -1.0; json.contains("instrumentation_cost_fraction")) {
