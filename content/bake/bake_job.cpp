@@ -52,6 +52,12 @@ void check_options(const BakeOptions& options) {
   if (options.target.error > 0.0 && options.target.budget_bytes > 0) {
     throw BadUsage("--error and --budget ask the same question the two ways round; give one of them");
   }
+  if (options.shares < 0 || options.share < 0 || options.share > options.shares) {
+    throw BadUsage(fmt::format("--share {}/{}: shares are 0/N, then 1/N to N/N", options.share, options.shares));
+  }
+  if (options.shares > 0 && options.target.asked()) {
+    throw BadUsage("--share does not go with --error or --budget: a plan is made in one place, and its maps with it");
+  }
   if (options.target.asked() && options.placement.spacing_m != 0.0) {
     throw BadUsage("--spacing is for grids; with --error or --budget probes stand where they are needed");
   }
@@ -107,14 +113,25 @@ class BakeJob {
     find_space_and_tour();
     if (!options_.target.asked()) place();
     const std::string key_text = manifest_.scene_hash + manifest_.options_hash;
-    const BakeState state(options_.pack.string() + ".partial", content_hash(std::as_bytes(std::span(key_text))));
+    const std::string key = content_hash(std::as_bytes(std::span(key_text)));
+    const fs::path folder = options_.pack.string() + ".partial";
+    if (options_.share > 0 && !BakeState::is_there(folder, key)) {
+      throw BadUsage(fmt::format("--share {}/{}: {} holds no light of this bake; run --share 0/{} first", options_.share,
+                                 options_.shares, folder.string(), options_.shares));
+    }
+    const BakeState state(folder, key);
     const LightField light(scene_, rays_, options_.light, progress_, state.load_light());
-    state.store_light(light.cache_values());
+    if (options_.share == 0) state.store_light(light.cache_values());
+    if (options_.shares > 0 && options_.share == 0) return report_;
     const Exposure exposure = choose_exposure(light, tour_);
     manifest_.radiance_scale = exposure.radiance_scale;
     manifest_.exposure_ev = exposure.exposure_ev;
     MapStore maps(rays_, light, static_cast<float>(manifest_.radiance_scale), state);
     if (options_.target.asked()) plan(light, exposure, maps);
+    if (options_.shares > 0) {
+      bake_share(maps);
+      return report_;
+    }
     bake_rooms(maps, state, wanted_);
     report_.rays += maps.rays_cast();
     report_.rays += light.rays_cast();
@@ -294,6 +311,35 @@ class BakeJob {
     } else {
       std::error_code ignored;  // that of an earlier pack of this name
       fs::remove(plan_file, ignored);
+    }
+  }
+
+  // Every so many-th of the maps, which stay in the state.
+  void bake_share(MapStore& maps) {
+    std::uint64_t unit = 0;
+    const auto is_ours = [&] { return unit++ % std::uint64_t(options_.shares) == std::uint64_t(options_.share - 1); };
+    progress_.begin("share", 2 * probes_in(wanted_) * levels_.size() / std::uint64_t(options_.shares), "maps");
+    const auto count = [&] {
+      ++report_.share_maps;
+      progress_.advance(1);
+      stop_if_asked();
+    };
+    for (std::size_t k = 0; k < manifest_.rooms.size(); ++k) {
+      const RoomEntry& room = manifest_.rooms[k];
+      if (!wanted_[k]) continue;
+      for (const LevelSize& size : levels_) {
+        for (std::uint32_t p = 0; p < room.probe_count; ++p) {
+          const glm::dvec3 position = manifest_.probe_positions_m[room.first_probe + p];
+          if (is_ours()) {
+            maps.geometry(position, size.geometry);
+            count();
+          }
+          if (is_ours()) {
+            maps.radiance(position, size.radiance);
+            count();
+          }
+        }
+      }
     }
   }
 

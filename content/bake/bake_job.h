@@ -27,6 +27,9 @@ struct BakeOptions {
   PlanTarget target;
   LightOptions light;
   std::optional<glm::dvec3> start_m;
+  // Work for several machines over one folder: share 0 of `shares` makes what all need, the light; shares 1 to `shares` bake
+  // a part of the maps each, and leave them beside the pack; a bake without a share then finishes it. 0 = the whole bake.
+  int shares = 0, share = 0;
   std::string only_room;           // bake this room's chunks anew, keep the rest of an existing pack
   std::string isa;
   std::string producer = "probewalk";  // as the manifest names it
@@ -34,6 +37,7 @@ struct BakeOptions {
 
 struct BakeReport {
   std::size_t rooms = 0, probes = 0, levels = 0;
+  std::size_t share_maps = 0;       // of a share: maps that are there now; nothing else is filled in then
   std::uint64_t texels = 0;         // radiance texels baked, all levels, mips not counted
   std::uint64_t rays = 0;
   double seconds = 0.0;

@@ -88,19 +88,22 @@ std::vector<std::byte> read_hashed(const fs::path& file, std::uint64_t most) {
 
 std::span<const std::byte> bytes_of(const std::string& text) { return std::as_bytes(std::span(text)); }
 
+// Empty when there is none: not the state of any bake that could be continued.
+std::string key_in(const fs::path& folder) {
+  try {
+    const std::vector<std::byte> bytes = read_file(folder / kKeyFile, kKeyFileBytes);
+    return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+  } catch (const BadInput&) {
+    return {};
+  }
+}
+
 }  // namespace
 
 BakeState::BakeState(fs::path folder, std::string key) : folder_(std::move(folder)), key_(std::move(key)) {
   std::error_code error;
   if (fs::exists(folder_, error)) {
-    std::string found;
-    try {
-      const std::vector<std::byte> bytes = read_file(folder_ / kKeyFile, kKeyFileBytes);
-      found.assign(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-    } catch (const BadInput&) {
-      // No key: not the state of any bake that could be continued.
-    }
-    if (found == key_) return;
+    if (key_in(folder_) == key_) return;
     remove();
   }
   fs::create_directories(folder_, error);
@@ -110,6 +113,8 @@ BakeState::BakeState(fs::path folder, std::string key) : folder_(std::move(folde
   }
   write_file_whole(folder_ / kKeyFile, bytes_of(key_));
 }
+
+bool BakeState::is_there(const fs::path& folder, const std::string& key) { return key_in(folder) == key; }
 
 fs::path BakeState::file(const char* kind, glm::dvec3 position_m, int side) const {
   const double place[3]{position_m.x + 0.0, position_m.y + 0.0, position_m.z + 0.0};  // no -0

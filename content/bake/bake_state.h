@@ -16,6 +16,9 @@ class BakeState {
   // key: 32 hex digits that name scene and options. What another bake kept is removed.
   BakeState(std::filesystem::path folder, std::string key);
 
+  // Whether this very bake has left its state there.
+  static bool is_there(const std::filesystem::path& folder, const std::string& key);
+
   // The light cache's values (LightField::cache_values). Empty when it is not there or cannot be believed.
   std::vector<glm::vec3> load_light() const;
   // Throws BadInput when the disk is full.

@@ -18,8 +18,28 @@ struct BakeArguments {
   double scale = 0.0;
   std::vector<double> start;
   double budget_mib = 0.0;
+  std::string share;  // K/N
   std::string rooms_file, credits_file;
 };
+
+void read_share(const std::string& text, BakeOptions& options) {
+  int end = 0;
+  if (std::sscanf(text.c_str(), "%9d/%9d%n", &options.share, &options.shares, &end) != 2 ||
+      std::size_t(end) != text.size() || options.shares < 1) {
+    throw BadUsage(fmt::format("--share {} is not K/N; shares are 0/N, then 1/N to N/N", text));
+  }
+}
+
+void print_share(const BakeOptions& options, const BakeReport& report, bool as_json) {
+  const std::string folder = options.pack.string() + ".partial";
+  if (as_json) {
+    const nlohmann::json json = {{"share", options.share}, {"shares", options.shares}, {"maps", report.share_maps}, {"folder", folder}};
+    std::puts(json.dump(2).c_str());
+    return;
+  }
+  const std::string what = options.share == 0 ? "the light is" : fmt::format("share {} of {}, {} maps, is", options.share, options.shares, report.share_maps);
+  std::puts(fmt::format("{} in {}; the same command without --share finishes the pack", what, folder).c_str());
+}
 
 void print_report(const BakeOptions& options, const BakeReport& report, bool as_json) {
   if (as_json) {
@@ -45,7 +65,7 @@ void print_report(const BakeOptions& options, const BakeReport& report, bool as_
   constexpr double kMiB = 1 << 20;
   std::fputs(fmt::format("{}: {} probes in {} rooms, {} level{}\n"
                          "  {:.1f} million texels in {:.0f} s, {:.2f} s per million texels, {:.0f} million rays\n"
-                         "  {:.1f} MiB on disk, {:.1f} MiB on the device, {:.2f} % of cells without a cut\n"
+                         "  {:.2f} MiB on disk, {:.2f} MiB on the device, {:.2f} % of cells without a cut\n"
                          "  seen from above: {}\n",
                          options.pack.string(), report.probes, report.rooms, report.levels, report.levels == 1 ? "" : "s",
                          static_cast<double>(report.texels) * 1e-6, report.seconds, report.seconds_per_million_texels,
@@ -69,7 +89,10 @@ void run_bake(BakeArguments arguments, const CommonOptions& common) {
   options.light.threads = common.threads;
   options.producer = std::string("probewalk ") + PROBEWALK_VERSION;
   const std::unique_ptr<Progress> progress = make_progress(common);
-  print_report(options, bake(options, *progress), common.json);
+  if (!arguments.share.empty()) read_share(arguments.share, options);
+  const BakeReport report = bake(options, *progress);
+  if (options.shares > 0) return print_share(options, report, common.json);
+  print_report(options, report, common.json);
 }
 
 }  // namespace
@@ -124,6 +147,9 @@ void add_bake_command(CLI::App& app, CommonOptions& common) {
       ->delimiter(',')->expected(3);
   command->add_option("--credits", arguments->credits_file, "Text file of credits, instead of the scene's own");
   command->add_option("--only-room", bake.only_room, "Bake this room of an existing pack anew (`probewalk info` lists rooms)");
+  command->add_option("--share", arguments->share,
+                      "Part K of N of the work, for several machines over one folder (tools/bake-slurm): 0/N makes the light, "
+                      "then 1/N to N/N in any order bake the maps; the same command without it finishes the pack");
   command->add_option("--isa", bake.isa,
                       "Instruction set of the ray caster (sse2, sse4.2, avx, avx2, avx512), for equal bytes on unequal "
                       "processors");

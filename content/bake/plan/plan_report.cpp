@@ -12,7 +12,12 @@ constexpr double kMiB = 1 << 20;
 
 nlohmann::json error_json(const RoomError& error) {
   if (!error.measured) return nullptr;
-  return {{"flip", error.flip}, {"wrong", error.wrong}, {"hole", error.hole}, {"unseen", error.unseen}};
+  return {{"flip", error.flip},
+          {"wrong", error.wrong},
+          {"hole", error.hole},
+          {"unseen", error.unseen},
+          {"flip_deviation", error.flip_deviation},
+          {"lost_deviation", error.lost_deviation}};
 }
 
 nlohmann::json coarser_json(const CoarserChoice& choice) {
@@ -82,9 +87,10 @@ std::string plan_table(const Plan& plan) {
         fmt::format("  {:<{}} {:6} {:8} {:8} {:6.2f} {}  {}\n", room.id, wide, room.probes_m.size(), room.size.geometry,
                     room.size.radiance, double(room.bytes_disk) / kMiB, error, coarser_text(room));
   }
-  text += fmt::format("  held back ({} rays, {} pictures): mean FLIP {:.4f}, wrong {:.2f} % + holes {:.2f} %",
-                      plan.held_back_rays, plan.held_back_pictures, plan.held_back.flip, 100.0 * plan.held_back.wrong,
-                      100.0 * plan.held_back.hole);
+  text += fmt::format(
+      "  held back ({} rays, {} pictures): mean FLIP {:.4f} +- {:.4f}, wrong {:.2f} % + holes {:.2f} % +- {:.2f} %",
+      plan.held_back_rays, plan.held_back_pictures, plan.held_back.flip, plan.held_back.flip_deviation,
+      100.0 * plan.held_back.wrong, 100.0 * plan.held_back.hole, 100.0 * plan.held_back.lost_deviation);
   if (plan.target.error > 0.0)
     text += fmt::format("; promised {:.4g}: {}", plan.target.error, plan.kept ? "kept" : "NOT kept");
   return text + "\n";

@@ -40,10 +40,11 @@ struct Room {
   bool closed = false;  // nothing more can be done
 };
 
-ViewCounts counts_for(std::size_t rooms, double rays, double patches) {
+// A room's views, of so many over all rooms.
+ViewCounts counts_for(std::size_t rooms, double effort, double rays, double patches, double most_patches) {
   const double each = 1.0 / double(std::max<std::size_t>(1, rooms));
-  return {int(std::clamp(rays * each, 500.0, 3000.0)),
-          patches > 0.0 ? int(std::clamp(patches * each, 48.0, 200.0)) : 0};
+  return {int(effort * std::clamp(rays * each, 500.0, 3000.0)),
+          patches > 0.0 ? int(effort * std::clamp(patches * each, 48.0, most_patches)) : 0};
 }
 
 class Planner {
@@ -59,8 +60,8 @@ class Planner {
         progress_(progress),
         grid_(plan_grid(heads)),
         maps_(maps),
-        choosing_(sample(0, counts_for(space.rooms.size(), 8000, 0))),
-        sizing_(sample(1, counts_for(space.rooms.size(), 16000, 1600))),
+        choosing_(sample(0, counts_for(space.rooms.size(), target.effort, 8000, 0, 0))),
+        sizing_(sample(1, counts_for(space.rooms.size(), target.effort, 16000, 1600, 200))),
         choice_(space, heads, triangles, choosing_.rays, grid_, candidate_side(), progress),
         rooms_(space.rooms.size()) {}
 
@@ -75,14 +76,14 @@ class Planner {
     for (int attempt = 0;; ++attempt) {
       refine();
       if (target_.error > 0.0) coarsen();
-      const WalkerViews views = sample(2 + std::uint32_t(attempt), counts_for(rooms_.size(), 24000, 2400));
+      const WalkerViews views = sample(2 + std::uint32_t(attempt), counts_for(rooms_.size(), target_.effort, 24000, 2400, 500));
       arrange();
       held_back = measure(views);
       plan.held_back = mean_error(held_back, views.room_share);
       plan.held_back_rays = views.rays.size();
       plan.held_back_pictures = views.patches.size();
-      plan.kept = target_.error > 0.0 ? plan.held_back.worst() <= target_.error : bytes_disk() <= target_.budget_bytes;
-      // Every room is to keep it, so that the mean does with something to spare.
+      plan.kept = target_.error > 0.0 ? plan.held_back.bound() <= target_.error : bytes_disk() <= target_.budget_bytes;
+      // Every room is to keep it, with confidence, so that the mean does with something to spare.
       if (target_.error <= 0.0 || attempt + 1 == kHeldBackAttempts || !tighten(held_back)) break;
     }
     describe(plan, held_back);
@@ -351,9 +352,9 @@ class Planner {
     bool any = false;
     for (std::size_t k = 0; k < rooms_.size(); ++k) {
       Room& room = rooms_[k];
-      if (!held_back[k].measured || held_back[k].worst() <= target_.error || room.closed) continue;
+      if (!held_back[k].measured || held_back[k].bound() <= target_.error || room.closed) continue;
       room.target =
-          std::min(room.target, room.error.worst()) * std::clamp(target_.error / held_back[k].worst(), 0.5, 0.97);
+          std::min(room.target, room.error.worst()) * std::clamp(target_.error / held_back[k].bound(), 0.5, 0.97);
       any = true;
     }
     return any;

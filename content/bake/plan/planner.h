@@ -26,6 +26,7 @@ struct PlanTarget {
   std::size_t most_probes = 200;
   int most_geometry = 1024;  // cells a side
   int most_radiance = 1024;  // texels a side
+  double effort = 1.0;             // more views are a surer promise and take longer
   int coarse_side = 128;     // of the level that finer ones come with
   bool asked() const { return error > 0.0 || budget_bytes > 0; }
 };
@@ -55,7 +56,7 @@ struct Plan {
   RoomError held_back;             // over the walkable floor
   std::size_t held_back_rays = 0, held_back_pictures = 0, candidates = 0;
   double seconds = 0.0;
-  bool kept = false;  // the promise, by the held-back views; or the budget
+  bool kept = false;  // the promise, by the held-back views with 95 % confidence; or the budget
 };
 
 // Throws Interrupted; finished maps are in the store's state then.

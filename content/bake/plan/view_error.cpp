@@ -2,6 +2,7 @@
 
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -41,17 +42,21 @@ PatchError patch_error(const EyePatch& patch, const ProbeView& probes, float exp
   const float spread_rad = float(std::numbers::pi / 180.0 / kPlanPixelsPerDegree);
   glm::vec3 hi, lo;
   split_position(patch.middle.origin_m, hi, lo);
+  int misplaced = 0;
   for (int k = 0; k < kPatchSide_px * kPatchSide_px; ++k) {
     const glm::vec3 d = patch.direction(k % kPatchSide_px, k / kPatchSide_px);
     const f32::RayAnswer answer = f32::trace_ray(probes.grid, probes.dials, hi, lo, d, kStartLevel);
     unsigned reads = 0;
     is.rgb[k] = f32::ray_radiance(probes.grid, probes.dials, answer, hi, lo, d, spread_rad, reads);
-    if (judge(answer, patch.truth_m[k]) != Judgement::kRight) places.rgb[k] = is.rgb[k];
+    if (judge(answer, patch.truth_m[k]) == Judgement::kRight) continue;
+    places.rgb[k] = is.rgb[k];
+    ++misplaced;
   }
   const ImageRgb8 reference = display_transform(should, exposure_ev);
   constexpr float kDensity = float(kPlanPixelsPerDegree);
-  return {flip_mean(reference, display_transform(is, exposure_ev), kDensity),
-          flip_mean(reference, display_transform(places, exposure_ev), kDensity)};
+  const double flip = flip_mean(reference, display_transform(is, exposure_ev), kDensity);
+  if (misplaced == 0) return {flip, 0.0};
+  return {flip, flip_mean(reference, display_transform(places, exposure_ev), kDensity)};
 }
 
 }  // namespace
@@ -93,6 +98,7 @@ std::vector<RoomError> measure_error(const WalkerViews& views, const ProbeView& 
     if (!wanted(middle)) continue;
     patch_count[middle.room] += 1.0;
     errors[middle.room].flip += patches[k].flip;
+    errors[middle.room].flip_deviation += patches[k].flip * patches[k].flip;
     errors[middle.room].flip_places += patches[k].places;
   }
   for (std::size_t room = 0; room < rooms; ++room) {
@@ -100,7 +106,9 @@ std::vector<RoomError> measure_error(const WalkerViews& views, const ProbeView& 
     error.measured = ray_count[room] > 0.0 && patch_count[room] > 0.0;
     if (!error.measured) continue;
     for (double* share : {&error.wrong, &error.hole, &error.unseen}) *share /= ray_count[room];
-    for (double* mean : {&error.flip, &error.flip_places}) *mean /= patch_count[room];
+    for (double* mean : {&error.flip, &error.flip_places, &error.flip_deviation}) *mean /= patch_count[room];
+    error.flip_deviation = std::sqrt(std::max(0.0, error.flip_deviation - error.flip * error.flip) / patch_count[room]);
+    error.lost_deviation = std::sqrt(error.lost() * (1.0 - error.lost()) / ray_count[room]);
   }
   return errors;
 }
@@ -116,9 +124,13 @@ RoomError mean_error(const std::vector<RoomError>& rooms, const std::vector<doub
     mean.wrong += share[room] * rooms[room].wrong;
     mean.hole += share[room] * rooms[room].hole;
     mean.unseen += share[room] * rooms[room].unseen;
+    mean.flip_deviation += std::pow(share[room] * rooms[room].flip_deviation, 2.0);
+    mean.lost_deviation += std::pow(share[room] * rooms[room].lost_deviation, 2.0);
   }
   if (!(sum > 0.0)) return mean;
   for (double* value : {&mean.flip, &mean.flip_places, &mean.wrong, &mean.hole, &mean.unseen}) *value /= sum;
+  mean.flip_deviation = std::sqrt(mean.flip_deviation) / sum;
+  mean.lost_deviation = std::sqrt(mean.lost_deviation) / sum;
   mean.measured = true;
   return mean;
 }

@@ -18,12 +18,20 @@ struct RoomError {
   double flip_places = 0.0;  // the same, had every ray with the right distance the right colour
   double wrong = 0.0;        // shares of the room's rays
   double hole = 0.0;
-  double unseen = 0.0;  // wrong or hole, and no probe sees what should be seen there
+  double unseen = 0.0;          // wrong or hole, and no probe sees what should be seen there
+  double flip_deviation = 0.0;  // standard deviations of the two as estimates of what all views would give
+  double lost_deviation = 0.0;
   bool measured = false;
 
   double lost() const { return wrong + hole; }
   // The larger of what is promised about.
   double worst() const { return lost() > flip ? lost() : flip; }
+  // What it is below with a confidence of 95 %.
+  double bound() const {
+    const double flip_bound = flip + kConfidence * flip_deviation, lost_bound = lost() + kConfidence * lost_deviation;
+    return lost_bound > flip_bound ? lost_bound : flip_bound;
+  }
+  static constexpr double kConfidence = 1.645;
 };
 
 // Probes as the tracer finds them. The records' addresses are of this process's memory.

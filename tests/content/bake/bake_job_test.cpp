@@ -142,6 +142,30 @@ TEST_F(BakeJob, BakesOneRoomOfAPackAnew) {
   EXPECT_EQ(files(folder_ / "whole.probes"), before);
 }
 
+TEST_F(BakeJob, GivesTheSameBytesInShares) {
+  bake_quietly(options("whole"));
+  BakeOptions shared = options("shared");
+  shared.shares = 3;
+  shared.share = 2;
+  EXPECT_THROW(bake_quietly(shared), BadUsage) << "the light is not there";
+  shared.share = 0;
+  bake_quietly(shared);
+  std::size_t maps = 0;
+  for (const int share : {3, 1}) {  // the second of the machines never comes
+    shared.share = share;
+    maps += bake_quietly(shared).share_maps;
+  }
+  EXPECT_GT(maps, 0u);
+  EXPECT_FALSE(fs::exists(folder_ / "shared.probes" / "pack.json"));
+  shared.shares = shared.share = 0;
+  bake_quietly(shared);
+  EXPECT_EQ(files(folder_ / "whole.probes"), files(folder_ / "shared.probes"));
+  EXPECT_FALSE(fs::exists(folder_ / "shared.probes.partial"));
+  shared.shares = 2;
+  shared.share = 3;
+  EXPECT_THROW(bake_quietly(shared), BadUsage);
+}
+
 TEST_F(BakeJob, RefusesWhatItCannotBake) {
   BakeOptions odd = options("a");
   odd.resolution = 100;

@@ -5,7 +5,9 @@
 
 #include "content/bake/bake_probe.h"
 #include "content/bake/light_field.h"
+#include "content/bake/patterns.h"
 #include "content/bake/plain_scenes.h"
+#include "support/low_discrepancy.h"
 
 namespace probewalk {
 namespace {
@@ -91,6 +93,73 @@ TEST(LightField, ShinesOutOfAClosedBulb) {
   SilentProgress progress;
   const LightField light(scene, rays, quick(), progress);
   EXPECT_GT(light.along({1, 1, 0}, {0, -1, 0}, 0.001f).r, 1.0f);
+}
+
+// Another way to the same light: paths followed from a point until they die, without caches or patterns, emission counted
+// where it is hit and point lights asked for at every bounce.
+glm::vec3 follow_paths(const Scene& scene, const RayScene& rays, glm::vec3 from, glm::vec3 towards, int paths) {
+  test::Random random(1);
+  glm::dvec3 sum(0.0);
+  for (int k = 0; k < paths; ++k) {
+    glm::vec3 origin = from, direction = towards, throughput(1.0f);
+    for (int bounce = 0; bounce < 24; ++bounce) {
+      const SurfaceHit hit = rays.closest(origin, direction);
+      if (!hit.hit) break;
+      const Material& material = scene.materials[scene.triangle_material[hit.triangle]];
+      sum += glm::dvec3(throughput * material.emissive_cd_m2);
+      const glm::vec3 normal = glm::dot(hit.geometric_normal, direction) < 0.0f ? hit.geometric_normal : -hit.geometric_normal;
+      const glm::vec3 point = origin + direction * hit.t + normal * 1e-4f;
+      throughput *= glm::vec3(material.base_color_factor);
+      for (const Light& light : scene.lights) {
+        const glm::vec3 to_light = light.position_m - point;
+        const float distance = glm::length(to_light), cosine = glm::dot(normal, to_light) / distance;
+        if (cosine <= 0.0f || rays.occluded(point, to_light, 0.0f, 0.999f)) continue;
+        sum += glm::dvec3(throughput * light.intensity * (std::numbers::inv_pi_v<float> * cosine / (distance * distance)));
+      }
+      const float survival = std::max(throughput.r, std::max(throughput.g, throughput.b));
+      if (random(0.0, 1.0) >= double(survival)) break;
+      throughput /= survival;
+      glm::vec3 tangent, bitangent;
+      tangent_frame(normal, tangent, bitangent);
+      const glm::vec3 local = cosine_direction({float(random(0.0, 1.0)), float(random(0.0, 1.0))});
+      origin = point;
+      direction = glm::normalize(tangent * local.x + bitangent * local.y + normal * local.z);
+    }
+  }
+  return glm::vec3(sum / double(paths));
+}
+
+TEST(LightField, AgreesWithPathsThatAreFollowed) {
+  Scene scene;
+  plain::add_material(scene, {0.7f, 0.6f, 0.5f});
+  plain::add_material(scene, {0.2f, 0.5f, 0.3f});
+  plain::add_material(scene, glm::vec3(0.0f), glm::vec3(800.0f, 700.0f, 500.0f));
+  plain::add_box(scene, {-2, 0, -3}, {2, 2.6f, 3}, 0);
+  plain::add_box(scene, {-1.2f, 0, -1}, {-0.4f, 1.1f, 0.2f}, 1);
+  plain::add_quad(scene, {0.5f, 2.55f, 0.5f}, {1.5f, 2.55f, 0.5f}, {1.5f, 2.55f, 1.5f}, {0.5f, 2.55f, 1.5f}, 2);
+  scene.lights.push_back(plain::point_light({-1.0f, 2.2f, 2.0f}, 120.0f));
+  const RayScene rays(scene);
+  SilentProgress progress;
+  LightOptions options = quick();
+  options.samples = 128;
+  options.cache_spacing_m = 0.25;
+  const LightField light(scene, rays, options, progress);
+  double error = 0.0, sum_cached = 0.0, sum_followed = 0.0;
+  int count = 0;
+  const glm::vec3 eye(0.3f, 1.5f, -0.8f);
+  for (int k = 0; k < 40; ++k) {
+    const glm::vec3 d(test::hammersley_direction(k, 40));
+    const SurfaceHit hit = rays.closest(eye, d);
+    if (!hit.hit || scene.triangle_material[hit.triangle] == 2) continue;
+    const float cached = luminance(light.along(eye, d, 0.01f)), followed = luminance(follow_paths(scene, rays, eye, d, 12000));
+    error += std::abs(double(cached - followed)) / double(followed);
+    sum_cached += double(cached);
+    sum_followed += double(followed);
+    ++count;
+  }
+  ASSERT_GT(count, 30);
+  EXPECT_NEAR(sum_cached / sum_followed, 1.0, 0.03) << "energy";
+  EXPECT_LT(error / count, 0.05) << "mean error of a direction, noise of the followed paths included";
 }
 
 TEST(LightField, IsTheSameWhateverTheThreads) {

@@ -38,6 +38,7 @@ class Planner : public testing::Test {
     if (!fs::exists(o.scene_file)) write_file_whole(o.scene_file, make_procedural_glb(scene));
     o.pack = folder_ / (pack + ".probes");
     o.target.error = error;
+    o.target.effort = 0.3;
     o.light.samples = 8;
     o.light.bounces = 1;
     return o;
@@ -90,7 +91,7 @@ TEST_F(Planner, GivesAPlainRoomTwoSmallProbesAtMost) {
   EXPECT_TRUE(report.planned->kept);
   EXPECT_LE(report.planned->held_back.flip, 0.08);
   EXPECT_LE(report.planned->held_back.lost(), 0.08);
-  EXPECT_GT(report.planned->held_back_rays, 500u);
+  EXPECT_GT(report.planned->held_back_rays, 300u);
   EXPECT_LE(report.probes, 2u);
   EXPECT_LT(report.bytes_disk, 300'000u);
   SilentProgress progress;
@@ -139,7 +140,7 @@ TEST_F(Planner, SaysWhatItChoseAndWhatCoarserWouldHaveCost) {
     const double flip = choice.at("error").at("flip"), wrong = choice.at("error").at("wrong"),
                  hole = choice.at("error").at("hole");
     const double error = std::max(flip, wrong + hole);
-    EXPECT_GT(error, 0.9 * 0.08) << choice.at("what") << " would have been enough";
+    EXPECT_GT(error, report.planned->rooms[0].chosen_on.worst()) << choice.at("what") << " is no worse";
     EXPECT_LT(choice.at("bytes_disk"), room.at("bytes_disk"));
   }
   EXPECT_NE(plan_table(*report.planned).find("kept"), std::string::npos);
