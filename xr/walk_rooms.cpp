@@ -24,6 +24,18 @@ StreamerOptions streamer_options(const WalkRoomsOptions& options) {
   return streamer;
 }
 
+// Empty = it arrived.
+std::string end_of(const LoadResult& load) {
+  switch (load.end) {
+    case LoadResult::End::kArrived: return {};
+    case LoadResult::End::kRefused: return "takes more than the pack states";
+    case LoadResult::End::kCancelled: return "not needed any more";
+    case LoadResult::End::kUnavailable:
+    case LoadResult::End::kBad: return load.error;
+  }
+  return {};
+}
+
 // The finest level of `room` among those wanted; -1 = none.
 std::int32_t wanted_level(const ResidencyDecision& decision, std::uint32_t room) {
   std::int32_t level = -1;
@@ -105,7 +117,7 @@ StreamingFacts WalkRooms::facts() const {
   facts.need_to_resident_ns = statistics.need_to_resident_ns;
   for (const LoadResult& load : streamer_.loads()) {
     facts.loads.push_back({pack_.manifest().rooms[load.key.room].id, load.key.level, load.thread,
-                           load.refused ? "takes more than the pack states" : load.error, load.bytes_disk,
+                           end_of(load), load.bytes_disk,
                            load.bytes_device, load.requested_ns, load.started_ns, load.read_ns, load.decoded_ns,
                            load.finished_ns});
   }

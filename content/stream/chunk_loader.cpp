@@ -4,6 +4,7 @@
 #include <chrono>
 #include <exception>
 
+#include "content/error.h"
 #include "content/pack/pack_io.h"
 
 namespace probewalk {
@@ -19,7 +20,8 @@ std::int64_t now_ns() {
 
 ChunkLoader::ChunkLoader(const Manifest& manifest, const ChunkSource& source, Deliver deliver,
                          const LoaderOptions& options)
-    : manifest_(manifest), source_(source), deliver_(std::move(deliver)), queue_capacity_(options.queue_capacity) {
+    : manifest_(manifest), source_(source), deliver_(std::move(deliver)), queue_capacity_(options.queue_capacity),
+      decoders_(std::max(options.decoders, 1u)) {
   for (unsigned k = 0; k < std::max(options.threads, 1u); ++k) {
     threads_.emplace_back([this, k](std::stop_token stop) { work(stop, k); });
   }
@@ -27,6 +29,10 @@ ChunkLoader::ChunkLoader(const Manifest& manifest, const ChunkSource& source, De
 
 ChunkLoader::~ChunkLoader() {
   for (std::jthread& thread : threads_) thread.request_stop();
+  {
+    const std::lock_guard lock(queue_mutex_);
+    for (const Request& request : under_way_) *request.cancelled = true;
+  }
   threads_.clear();
 }
 
@@ -34,11 +40,21 @@ bool ChunkLoader::request(LevelKey key, std::uint64_t reserved_bytes) {
   {
     const std::lock_guard lock(queue_mutex_);
     if (queue_.size() >= queue_capacity_) return false;
-    queue_.push_back({key, reserved_bytes, now_ns()});
+    queue_.push_back({key, reserved_bytes, now_ns(), std::make_shared<std::atomic<bool>>(false)});
     depth_.fetch_add(1, std::memory_order_relaxed);
   }
   queue_filled_.notify_one();
   return true;
+}
+
+void ChunkLoader::cancel(LevelKey key) {
+  const std::lock_guard lock(queue_mutex_);
+  for (const Request& request : queue_) {
+    if (request.key == key) *request.cancelled = true;
+  }
+  for (const Request& request : under_way_) {
+    if (request.key == key) *request.cancelled = true;
+  }
 }
 
 std::vector<LoadResult> ChunkLoader::poll() {
@@ -62,9 +78,14 @@ void ChunkLoader::work(std::stop_token stop, unsigned thread) {
       if (stop.stop_requested()) return;
       request = queue_.front();
       queue_.pop_front();
+      under_way_.push_back(request);
     }
     LoadResult result = load(request);
     result.thread = thread;
+    {
+      const std::lock_guard lock(queue_mutex_);
+      std::erase_if(under_way_, [&](const Request& other) { return other.cancelled == request.cancelled; });
+    }
     {
       const std::lock_guard lock(finished_mutex_);
       finished_.push_back(std::move(result));
@@ -74,32 +95,64 @@ void ChunkLoader::work(std::stop_token stop, unsigned thread) {
   }
 }
 
-LoadResult ChunkLoader::load(const Request& request) const {
+LoadResult ChunkLoader::load(const Request& request) {
   LoadResult result;
   result.key = request.key;
   result.requested_ns = request.requested_ns;
   result.started_ns = now_ns();
+  const auto fail = [&](LoadResult::End end, const std::exception& error) {
+    result.end = *request.cancelled ? LoadResult::End::kCancelled : end;
+    if (!*request.cancelled) result.error = error.what();
+  };
+  std::vector<std::byte> chunk;
   try {
-    const RoomEntry& room = manifest_.rooms.at(request.key.room);
-    const LevelEntry& level = room.levels.at(request.key.level);
-    LoadedLevel loaded{request.key.room, request.key.level, room.first_probe, {}};
-    const std::vector<std::byte> chunk = source_.read(level);
-    result.bytes_disk = chunk.size();
-    result.read_ns = now_ns();
-    RoomLevel maps = decode_level(manifest_, request.key.room, request.key.level, chunk);
-    for (ProbeMap& map : maps.probes) {
-      loaded.probes.push_back(build_device_probe(map));
-      result.bytes_device += device_bytes(loaded.probes.back());
-      map = ProbeMap{};  // a room at its finest need not be in memory twice
+    if (!*request.cancelled) {
+      chunk = source_.read(manifest_.rooms.at(request.key.room).levels.at(request.key.level), *request.cancelled);
     }
-    result.decoded_ns = now_ns();
-    result.refused = result.bytes_device > request.reserved_bytes;
-    if (!result.refused) deliver_(std::move(loaded));
+    if (*request.cancelled) {
+      result.end = LoadResult::End::kCancelled;
+    } else {
+      result.bytes_disk = chunk.size();
+      result.read_ns = now_ns();
+    }
+  } catch (const BadInput& error) {
+    fail(LoadResult::End::kBad, error);
   } catch (const std::exception& error) {
-    result.error = error.what();
+    fail(LoadResult::End::kUnavailable, error);
+  }
+  if (result.end == LoadResult::End::kArrived) {
+    decoders_.acquire();
+    try {
+      decode(request, result, chunk);
+    } catch (const BadInput& error) {
+      fail(LoadResult::End::kBad, error);
+    } catch (const std::exception& error) {
+      fail(LoadResult::End::kUnavailable, error);
+    }
+    decoders_.release();
   }
   result.finished_ns = now_ns();
   return result;
+}
+
+void ChunkLoader::decode(const Request& request, LoadResult& result, const std::vector<std::byte>& chunk) {
+  LoadedLevel loaded{request.key.room, request.key.level, manifest_.rooms[request.key.room].first_probe, {}};
+  RoomLevel maps = decode_level(manifest_, request.key.room, request.key.level, chunk);
+  for (ProbeMap& map : maps.probes) {
+    if (*request.cancelled) {
+      result.end = LoadResult::End::kCancelled;
+      return;
+    }
+    loaded.probes.push_back(build_device_probe(map));
+    result.bytes_device += device_bytes(loaded.probes.back());
+    map = ProbeMap{};  // a room at its finest need not be in memory twice
+  }
+  result.decoded_ns = now_ns();
+  if (result.bytes_device > request.reserved_bytes) {
+    result.end = LoadResult::End::kRefused;
+  } else {
+    deliver_(std::move(loaded));
+  }
 }
 
 }  // namespace probewalk

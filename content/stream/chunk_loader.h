@@ -7,7 +7,9 @@
 #include <cstdint>
 #include <deque>
 #include <functional>
+#include <memory>
 #include <mutex>
+#include <semaphore>
 #include <string>
 #include <thread>
 #include <vector>
@@ -15,7 +17,7 @@
 #include "content/pack/manifest.h"
 #include "content/probe/device_probe.h"
 #include "content/stream/chunk_source.h"
-#include "content/stream/residency.h"
+#include "content/stream/streaming_policy.h"
 
 namespace probewalk {
 
@@ -28,9 +30,16 @@ struct LoadedLevel {
 };
 
 struct LoadResult {
+  enum class End {
+    kArrived,
+    kRefused,      // takes more than was reserved: not handed over
+    kCancelled,
+    kUnavailable,  // the source did not deliver, or the device has no space: later it may
+    kBad,          // the bytes are those that the pack means, and are no sound chunk
+  };
   LevelKey key;
-  std::string error;  // empty: it arrived, or was refused. Errors are values here: nothing is thrown across threads
-  bool refused = false;  // takes more than was reserved: not handed over
+  End end = End::kArrived;
+  std::string error;  // of kUnavailable and kBad. Errors are values here: nothing is thrown across threads
   std::uint64_t bytes_disk = 0;
   std::uint64_t bytes_device = 0;  // that it really takes; 0 = not decoded
   unsigned thread = 0;             // that loaded it, from 0
@@ -43,7 +52,8 @@ struct LoadResult {
 };
 
 struct LoaderOptions {
-  unsigned threads = 1;
+  unsigned threads = 1;   // that wait for the source
+  unsigned decoders = 1;  // of them may compute at a time
   std::size_t queue_capacity = 64;
 };
 
@@ -62,6 +72,8 @@ class ChunkLoader {
   // A level that takes more than `reserved_bytes` on the device is not handed over. False when the queue is full: ask
   // again later.
   bool request(LevelKey key, std::uint64_t reserved_bytes = kUnlimitedBudget);
+  // Not needed any more: it ends as kCancelled, unless it has all but arrived.
+  void cancel(LevelKey key);
   // What has finished since the last call, in the order of finishing. Never blocks.
   std::vector<LoadResult> poll();
   // Waits until there is something to poll, at most this long. Not for frame threads.
@@ -74,9 +86,11 @@ class ChunkLoader {
     LevelKey key;
     std::uint64_t reserved_bytes = 0;
     std::int64_t requested_ns = 0;
+    std::shared_ptr<std::atomic<bool>> cancelled;  // seen by the frame thread and the thread that loads
   };
   void work(std::stop_token stop, unsigned thread);
-  LoadResult load(const Request& request) const;
+  LoadResult load(const Request& request);
+  void decode(const Request& request, LoadResult& result, const std::vector<std::byte>& chunk);
 
   const Manifest& manifest_;
   const ChunkSource& source_;
@@ -86,6 +100,8 @@ class ChunkLoader {
   std::mutex queue_mutex_;
   std::condition_variable_any queue_filled_;
   std::deque<Request> queue_;
+  std::vector<Request> under_way_;
+  std::counting_semaphore<> decoders_;
   std::mutex finished_mutex_;
   std::condition_variable finished_filled_;
   std::vector<LoadResult> finished_;

@@ -4,7 +4,7 @@
 
 namespace probewalk {
 
-std::vector<std::byte> FolderSource::read(const LevelEntry& level) const {
+std::vector<std::byte> FolderSource::read(const LevelEntry& level, const std::atomic<bool>& /*cancelled*/) const {
   return read_chunk_file(pack_, level.chunk, level.bytes_disk);
 }
 

@@ -1,8 +1,10 @@
 // Where chunks come from.
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "content/pack/manifest.h"
@@ -12,15 +14,22 @@ namespace probewalk {
 class ChunkSource {
  public:
   virtual ~ChunkSource() = default;
-  // The chunk's bytes, hash checked. Blocks; called by loader threads, several at once. Throws BadInput.
-  virtual std::vector<std::byte> read(const LevelEntry& level) const = 0;
+  // The chunk's bytes, hash checked. Blocks; called by loader threads, several at once. Throws Error: the source does not
+  // deliver, which may be otherwise later. Gives up soon after `cancelled` turns true, where that is worth the while:
+  // returns or throws anything.
+  virtual std::vector<std::byte> read(const LevelEntry& level, const std::atomic<bool>& cancelled) const = 0;
+  // What people call it: a path or an address.
+  virtual std::string name() const = 0;
+  // Reads that may wait for the source at a time, to make the best of it.
+  virtual unsigned parallel_reads() const { return 1; }
 };
 
 // A pack's folder on a disk.
 class FolderSource final : public ChunkSource {
  public:
   explicit FolderSource(std::filesystem::path pack) : pack_(std::move(pack)) {}
-  std::vector<std::byte> read(const LevelEntry& level) const override;
+  std::vector<std::byte> read(const LevelEntry& level, const std::atomic<bool>& cancelled) const override;
+  std::string name() const override { return pack_.string(); }
 
  private:
   std::filesystem::path pack_;

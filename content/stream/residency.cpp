@@ -3,11 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <set>
+#include <cmath>
 #include <tuple>
+#include <unordered_map>
 
 #include "content/error.h"
-#include "content/probe/device_probe.h"
+#include "content/stream/level_choice.h"
 
 namespace probewalk {
 
@@ -15,38 +16,14 @@ namespace {
 
 // The building counts as small when its coarse levels take at most this share of the budget.
 constexpr std::uint64_t kSmallShare = 4;
-constexpr double kFarthestLookAhead_m = 5.0;  // a teleport's velocity predicts nothing
-
-std::uint64_t coarse_bytes(const RoomEntry& room) {
-  return room.levels.empty() ? 0 : planned_bytes(room, room.levels.front());
-}
-
-bool occupies(LevelStatus status) { return status == LevelStatus::kLoading || status == LevelStatus::kResident; }
-
-// Something beyond its coarsest level is there or on its way.
-bool holds_fine(const std::vector<LevelStatus>& levels) {
-  return levels.size() > 1 && std::any_of(levels.begin() + 1, levels.end(), occupies);
-}
+constexpr double kMostSpeed_m_s = 5.0;     // a teleport's velocity predicts nothing
+constexpr double kAimDelay_s = 0.5;        // from aiming to being there
+constexpr double kUnseenWeight = 0.5;      // of a room that the walker is about to enter, against the one around them
+constexpr double kViewWeight = 0.5;        // of a room that fills the view
+constexpr double kBehindWeight = 0.25;     // of one that would, if the head turned
+constexpr std::uint32_t kFillRooms = 16;   // looked at in one frame for the rest of a small building
 
 }  // namespace
-
-// A room in the order in which it should be served.
-struct Residency::Candidate {
-  std::uint32_t room = 0;
-  std::uint32_t portals = 0;  // from the walker's room
-  double distance_m = 0.0;
-  bool near = true;   // within the portals whose coarsest levels are always wanted
-  bool fine = false;  // near enough for more than its coarsest level
-};
-
-std::uint64_t planned_bytes(const RoomEntry& room, const LevelEntry& level) {
-  const auto bytes = [&](std::uint64_t cut_cells) {
-    return room.probe_count * device_probe_bytes(static_cast<int>(level.geometry_size),
-                                                 static_cast<int>(level.radiance_size), cut_cells);
-  };
-  const std::uint64_t cells = std::uint64_t{level.geometry_size} * level.geometry_size;
-  return std::clamp(level.bytes_device, bytes(0), bytes(cells)) + room.probe_count * kMostPadding_bytes;
-}
 
 std::uint64_t minimum_budget(const Manifest& manifest, const ResidencyOptions& options) {
   const RoomGraph graph(manifest.rooms, manifest.portals);
@@ -54,7 +31,8 @@ std::uint64_t minimum_budget(const Manifest& manifest, const ResidencyOptions& o
   for (std::uint32_t room = 0; room < graph.size(); ++room) {
     std::uint64_t needed = 0;
     for (const RoomGraph::Reach& reach : graph.reach(room, glm::dvec3(0.0), options.coarse_portals)) {
-      needed += coarse_bytes(manifest.rooms[reach.room]);
+      const RoomEntry& entry = manifest.rooms[reach.room];
+      needed += entry.levels.empty() ? 0 : planned_bytes(entry, entry.levels.front());
     }
     most = std::max(most, needed);
   }
@@ -62,11 +40,9 @@ std::uint64_t minimum_budget(const Manifest& manifest, const ResidencyOptions& o
 }
 
 Residency::Residency(const Manifest& manifest, const ResidencyOptions& options)
-    : graph_(manifest.rooms, manifest.portals), options_(options) {
-  for (const RoomEntry& room : manifest.rooms) {
-    auto& levels = bytes_.emplace_back();
-    for (const LevelEntry& level : room.levels) levels.push_back(planned_bytes(room, level));
-  }
+    : graph_(manifest.rooms, manifest.portals),
+      options_(options),
+      planner_(options.budget_bytes, options.most_loads) {
   const std::uint64_t least = minimum_budget(manifest, options);
   if (options.budget_bytes < least) {
     constexpr std::uint64_t kMiB = 1 << 20;
@@ -74,137 +50,149 @@ Residency::Residency(const Manifest& manifest, const ResidencyOptions& options)
                                "--device-budget {}",
                                static_cast<double>(options.budget_bytes) / kMiB, (least + kMiB - 1) / kMiB));
   }
-  all_coarse_ = is_small();
 }
 
-bool Residency::is_small() const {
-  std::uint64_t all = 0;
-  for (const auto& levels : bytes_) all += levels.empty() ? 0 : levels.front();
-  return all <= options_.budget_bytes / kSmallShare;
-}
-
-void Residency::learn(LevelKey key, std::uint64_t bytes) {
-  bytes_[key.room][key.level] = bytes;
-  if (key.level == 0) all_coarse_ = is_small();
-}
-
-LevelStatuses Residency::absent() const {
-  LevelStatuses status;
-  for (const auto& levels : bytes_) status.emplace_back(levels.size(), LevelStatus::kAbsent);
-  return status;
-}
-
-// Rooms that deserve something, most urgent first.
-std::vector<Residency::Candidate> Residency::candidates(const Walker& walker, const LevelStatuses& status) {
+// Rooms that deserve something, most urgent first; the walker's room is the first.
+std::vector<Residency::Candidate> Residency::candidates(const Walker& walker) {
   const auto room = graph_.room_of(walker.head_m, room_, options_.doorway_margin_m);
   room_ = room;
-  glm::dvec3 ahead_m = walker.velocity_m_s * options_.look_ahead_s;
-  if (const double length_m = glm::length(ahead_m); length_m > kFarthestLookAhead_m)
-    ahead_m *= kFarthestLookAhead_m / length_m;
-  const auto room_ahead = graph_.room_of(walker.head_m + ahead_m, room, options_.doorway_margin_m);
+  glm::dvec3 velocity_m_s = walker.velocity_m_s;
+  if (const double speed_m_s = glm::length(velocity_m_s); speed_m_s > kMostSpeed_m_s) velocity_m_s = glm::dvec3(0.0);
 
-  std::vector<Candidate> order;
-  std::vector<bool> near(graph_.size(), false);
-  for (const auto& reach : graph_.reach(room, walker.head_m, options_.coarse_portals)) {
-    order.push_back({reach.room, reach.portals, reach.distance_m, true, reach.portals <= options_.fine_portals});
-    near[reach.room] = true;
+  std::vector<Candidate> all;
+  for (const RoomGraph::Reach& reach : graph_.reach(room, walker.head_m, options_.coarse_portals, velocity_m_s)) {
+    all.push_back({.room = reach.room,
+                   .portals = reach.portals,
+                   .arrival_s = reach.arrival_s,
+                   .near = true,
+                   .fine = reach.portals <= options_.fine_portals});
   }
-  // What lies ahead changes the order only: a head that sways must not change what is wanted.
-  const auto rank = [&](const Candidate& c) {
-    const double sticky_m = holds_fine(status[c.room]) ? options_.sticky_m : 0.0;
-    return std::tuple(c.room != room, c.room != room_ahead, c.distance_m - sticky_m, c.room);
-  };
-  std::sort(order.begin(), order.end(), [&](const Candidate& a, const Candidate& b) { return rank(a) < rank(b); });
-  if (all_coarse_) {
-    for (std::uint32_t other = 0; other < graph_.size(); ++other) {
-      if (!near[other]) order.push_back({other, ~std::uint32_t{0}, 1e9, false, false});
+  for (const RoomGraph::Seen& seen : graph_.seen(room, walker.head_m, walker.look)) {
+    all.push_back({.room = seen.room, .portals = seen.portals, .share = seen.share, .in_view = seen.in_view, .fine = true});
+  }
+  if (walker.aim_m) {
+    // No must: the smallest budget holds the walker's surroundings only.
+    const std::uint32_t target = graph_.room_of(*walker.aim_m, -1, 0.0);
+    for (const RoomGraph::Reach& reach : graph_.reach(target, *walker.aim_m, options_.fine_portals)) {
+      all.push_back({.room = reach.room, .arrival_s = reach.arrival_s + kAimDelay_s, .fine = reach.portals == 0});
     }
   }
+
+  std::vector<Candidate> order;
+  std::unordered_map<std::uint32_t, std::size_t> place;
+  for (const Candidate& c : all) {
+    const auto [known, is_new] = place.try_emplace(c.room, order.size());
+    if (is_new) {
+      order.push_back(c);
+      continue;
+    }
+    Candidate& merged = order[known->second];
+    merged.portals = std::min(merged.portals, c.portals);
+    merged.arrival_s = std::min(merged.arrival_s, c.arrival_s);
+    merged.share = std::max(merged.share, c.share);
+    merged.in_view = merged.in_view || c.in_view;
+    merged.fine = merged.fine || c.fine;
+  }
+  for (Candidate& c : order) {
+    c.weight = c.room == room ? 1.0
+                              : std::max(kUnseenWeight * std::exp(-c.arrival_s / options_.patience_s),
+                                         (c.in_view ? kViewWeight : kBehindWeight) * std::sqrt(c.share));
+  }
+  std::sort(order.begin(), order.end(), [&](const Candidate& a, const Candidate& b) {
+    return std::tuple(a.room != room, -a.weight, a.room) < std::tuple(b.room != room, -b.weight, b.room);
+  });
   return order;
 }
 
-// The levels to have, within the budget: the coarsest of the rooms that always have it, then the finest that fits, room
-// by room, then the rest of a small building, whose space is set aside from the beginning.
-std::vector<LevelKey> Residency::choose(const std::vector<Candidate>& order, const LevelStatuses& status) const {
-  std::vector<LevelKey> wanted, rest;
+// The levels to have, most urgent first, within the budget.
+std::vector<LevelKey> Residency::want(const std::vector<Candidate>& order, const LevelBook& book) const {
+  std::vector<LevelKey> wanted;
   std::uint64_t left = options_.budget_bytes;
-  const auto take = [&](LevelKey key, std::vector<LevelKey>& list) {
-    if (status[key.room][key.level] == LevelStatus::kFailed || bytes(key) > left) return false;
-    left -= bytes(key);
-    list.push_back(key);
-    return true;
+  if (all_coarse_) left -= book.coarse_bytes();  // set aside from the beginning
+  const auto take_coarse = [&](const Candidate& c) {
+    const LevelKey key{c.room, 0};
+    if (book.levels(c.room) == 0 || book.status(key) == LevelStatus::kFailed) return;
+    if (!all_coarse_ && book.bytes(key) > left) return;
+    if (!all_coarse_) left -= book.bytes(key);
+    wanted.push_back(key);
   };
   for (const Candidate& c : order) {
-    if (!status[c.room].empty()) take({c.room, 0}, c.near ? wanted : rest);
+    if (c.near) take_coarse(c);
+  }
+  // Rooms farther off take nothing of what the walker's own and the next one could have.
+  std::uint64_t kept = 0;
+  for (std::size_t k = 0; k < std::min<std::size_t>(2, order.size()); ++k) {
+    std::uint64_t finest = 0;
+    for (std::uint32_t level = 1; order[k].fine && level < book.levels(order[k].room); ++level) {
+      const std::uint64_t bytes = book.bytes({order[k].room, level});
+      if (kept + bytes <= left) finest = std::max(finest, bytes);
+    }
+    kept += finest;
   }
   for (const Candidate& c : order) {
-    if (!c.fine) continue;
-    for (std::size_t level = status[c.room].size(); level-- > 1;) {
-      if (take({c.room, static_cast<std::uint32_t>(level)}, wanted)) break;
-    }
+    if (c.near || book.levels(c.room) == 0) continue;
+    if (all_coarse_ || left >= kept + book.bytes({c.room, 0})) take_coarse(c);
   }
-  wanted.insert(wanted.end(), rest.begin(), rest.end());
+
+  std::vector<RoomWorth> rooms;
+  for (const Candidate& c : order) rooms.push_back({c.room, c.weight, c.fine, c.in_view});
+  const std::vector<std::uint32_t> level = choose_levels(rooms, book, left, options_.sticky);
+  // By what a byte is worth, so that the shortest waits come first among equals.
+  std::vector<std::pair<double, LevelKey>> fine;
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    if (level[k] == 0) continue;
+    const LevelKey key{order[k].room, level[k]};
+    const double gain = book.quality(key) - book.quality({key.room, 0});
+    const double bytes = static_cast<double>(book.bytes_disk(key)) + 1.0;
+    fine.push_back({k == 0 ? INFINITY : order[k].weight * gain / bytes, key});
+  }
+  std::sort(fine.begin(), fine.end(),
+            [](const auto& a, const auto& b) { return std::tuple(-a.first, a.second) < std::tuple(-b.first, b.second); });
+  for (const auto& [urgency, key] : fine) wanted.push_back(key);
   return wanted;
 }
 
-ResidencyDecision Residency::decide(const Walker& walker, const LevelStatuses& status, std::uint64_t retired_bytes) {
-  ResidencyDecision decision;
-  const std::vector<Candidate> order = candidates(walker, status);
-  decision.room = static_cast<std::uint32_t>(room_);
-  decision.wanted = choose(order, status);
-  const std::set<LevelKey> wanted(decision.wanted.begin(), decision.wanted.end());
-
-  std::uint64_t occupied = retired_bytes;
-  std::uint32_t loading = 0;
-  std::vector<LevelKey> spare;  // resident but not wanted
-  for (std::uint32_t room = 0; room < status.size(); ++room) {
-    for (std::uint32_t level = 0; level < status[room].size(); ++level) {
-      const LevelKey key{room, level};
-      if (!occupies(status[room][level])) continue;
-      occupied += bytes(key);
-      if (status[room][level] == LevelStatus::kLoading) ++loading;
-      else if (!wanted.contains(key)) spare.push_back(key);
-    }
-  }
-
-  // Evicted bytes are only free once no frame reads them, so they count until the caller says they are gone.
-  std::uint64_t short_of = 0;
-  decision.settled = true;
-  for (const LevelKey& key : decision.wanted) {
-    const LevelStatus s = status[key.room][key.level];
-    if (s != LevelStatus::kResident) decision.settled = false;
-    if (s != LevelStatus::kAbsent) continue;
-    const bool fits = occupied <= options_.budget_bytes && bytes(key) <= options_.budget_bytes - occupied;
-    if (!fits) {
-      // Only the most urgent one waits for space; later ones would take it away.
-      short_of = bytes(key) - std::min(bytes(key), options_.budget_bytes - std::min(options_.budget_bytes, occupied));
-      break;
-    }
-    if (loading == options_.most_loads) break;
-    ++loading;
-    occupied += bytes(key);
+// The rest of a small building comes in when there is nothing else to do.
+void Residency::fill(ResidencyDecision& decision, const LevelBook& book, std::uint64_t retired_bytes) {
+  if (book.coarse_open() == 0) return;
+  std::uint64_t occupied = book.held_bytes() + retired_bytes;
+  for (const LevelKey& key : decision.loads) occupied += book.bytes(key);
+  std::size_t loading = book.loading() + decision.loads.size();
+  for (std::uint32_t k = 0; k < kFillRooms && loading < options_.most_loads; ++k) {
+    const LevelKey key{next_fill_, 0};
+    next_fill_ = (next_fill_ + 1) % book.rooms();
+    if (book.levels(key.room) == 0 || book.status(key) != LevelStatus::kAbsent) continue;
+    if (std::find(decision.loads.begin(), decision.loads.end(), key) != decision.loads.end()) continue;
+    if (occupied > options_.budget_bytes || book.bytes(key) > options_.budget_bytes - occupied) continue;
     decision.loads.push_back(key);
+    occupied += book.bytes(key);
+    ++loading;
   }
+}
 
-  if (short_of > retired_bytes) {
-    std::vector<double> distance_m(graph_.size(), 1e12);
-    for (const Candidate& c : order) distance_m[c.room] = c.distance_m;
-    // Farthest first; of one room the finest first.
-    std::sort(spare.begin(), spare.end(), [&](const LevelKey& a, const LevelKey& b) {
-      return std::tuple(-distance_m[a.room], b) < std::tuple(-distance_m[b.room], a);
-    });
-    std::uint64_t freed = retired_bytes;
-    for (const LevelKey& key : spare) {
-      if (freed >= short_of) break;
-      freed += bytes(key);
-      decision.evictions.push_back(key);
+ResidencyDecision Residency::decide(const Walker& walker, const LevelBook& book, std::uint64_t retired_bytes) {
+  ResidencyDecision decision;
+  if (book.rooms() == 0) return decision;
+  const bool was_small = all_coarse_;
+  all_coarse_ = book.coarse_bytes() <= options_.budget_bytes / kSmallShare;
+  if (was_small && !all_coarse_) {  // the pack had stated too little
+    for (std::uint32_t room = 0; room < book.rooms(); ++room) {
+      if (book.levels(room) > 0) planner_.touch({room, 0});
     }
   }
+  const std::vector<Candidate> order = candidates(walker);
+  decision.room = static_cast<std::uint32_t>(room_);
+  decision.wanted = want(order, book);
 
+  planner_.plan(decision, book, retired_bytes, all_coarse_);
+  if (all_coarse_) {
+    if (book.coarse_open() > 0) decision.settled = false;
+    fill(decision, book, retired_bytes);
+  }
   for (const Candidate& c : order) {
     if (c.portals > 1) continue;
     for (const LevelKey& key : decision.wanted) {
-      if (key.room == c.room && status[key.room][key.level] != LevelStatus::kResident) decision.coarse = true;
+      if (key.room == c.room && book.status(key) != LevelStatus::kResident) decision.coarse = true;
     }
   }
   return decision;

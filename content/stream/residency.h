@@ -1,96 +1,68 @@
-// Which rooms should be on the device, and at which level: a policy of numbers in, decisions out. Knows neither files
-// nor threads nor a GPU. Rules:
-//  - the coarsest level of every room within three portals of the walker's is always wanted, so that no room is black;
-//    of all rooms where the building is small;
-//  - then the finest level that fits of the walker's room, and of rooms seen through up to two portals: first the one
-//    that the walker is about to enter, then nearer ones first;
-//  - what is wanted is never evicted; what is not is evicted only to make space, farthest first: a walker who turns
-//    back finds the rooms still there;
+// Which rooms should be on the device, and at which level: the product's policy. Rules:
+//  - the coarsest level of every room within three portals of the walker's, and of every room in sight, is always wanted,
+//    so that no room is black (beyond three portals only where the walker's own room and the next lose nothing by it); of all rooms
+//    where the building is small;
+//  - the rest of the budget goes to finer levels by benefit per byte: octaves of detail, times how much of the view the
+//    room fills or how soon the walker may be there, over the bytes that it takes. The walker's own room is weighed
+//    against all others together, so that its size does not rob it of its detail;
+//  - what is there has a bonus over what is not, so that a walker who stands in a doorway makes nothing come and go;
+//  - what is wanted is never evicted, and a level in view gives way to nothing but the walker's own room. What is not
+//    wanted goes only to make space, what was wanted longest ago first: a walker who turns back finds the rooms still
+//    there;
 //  - resident, loading and not yet freed bytes together never exceed the budget. What a level takes is what the pack
 //    states, kept within what maps of its size can take, until it has been decoded and is known.
+// What a decision costs depends on the rooms around the walker, not on how many the building has.
 #pragma once
 
 #include <cstdint>
-#include <span>
 #include <vector>
 
-#include "content/pack/manifest.h"
 #include "content/stream/room_graph.h"
+#include "content/stream/streaming_policy.h"
 
 namespace probewalk {
-
-inline constexpr std::uint64_t kUnlimitedBudget = ~std::uint64_t{0};
 
 struct ResidencyOptions {
   std::uint64_t budget_bytes = kUnlimitedBudget;  // device memory for probes
   std::uint32_t coarse_portals = 3;
   std::uint32_t fine_portals = 2;
-  double look_ahead_s = 1.0;      // of the walker's motion
+  double patience_s = 3.0;        // a room reached this much later counts 1/e as much
   double doorway_margin_m = 0.3;  // depth in the next room that makes it the walker's
-  double sticky_m = 1.0;          // how much nearer another room must be to take a fine level's place
+  double sticky = 1.5;            // how much more what is there counts than what is not
   std::uint32_t most_loads = 4;   // under way at once; few, so that order follows the walker
 };
-
-struct LevelKey {
-  std::uint32_t room = 0;
-  std::uint32_t level = 0;
-  auto operator<=>(const LevelKey&) const = default;
-};
-
-enum class LevelStatus : std::uint8_t {
-  kAbsent,
-  kLoading,
-  kResident,
-  kFailed,  // its chunk is bad: never asked for again, the next coarser level stands in
-};
-using LevelStatuses = std::vector<std::vector<LevelStatus>>;  // [room][level], as the manifest
-
-struct Walker {
-  glm::dvec3 head_m{0.0};
-  glm::dvec3 velocity_m_s{0.0};
-};
-
-struct ResidencyDecision {
-  std::uint32_t room = 0;          // the walker's
-  std::vector<LevelKey> wanted;    // most urgent first; together within the budget
-  std::vector<LevelKey> loads;     // to begin now, in this order
-  std::vector<LevelKey> evictions;  // to do now
-  bool settled = false;            // everything wanted is resident
-  bool coarse = false;             // the walker's room or one beside it lacks its wanted level
-};
-
-// Device bytes to set aside for a level of a room before it has been decoded.
-std::uint64_t planned_bytes(const RoomEntry& room, const LevelEntry& level);
 
 // Device bytes that suffice wherever the walker stands: the coarsest levels that are always wanted.
 std::uint64_t minimum_budget(const Manifest& manifest, const ResidencyOptions& options = {});
 
-class Residency {
+class Residency final : public StreamingPolicy {
  public:
   // Throws BadUsage when the budget is below the minimum; the message names the smallest that works.
   Residency(const Manifest& manifest, const ResidencyOptions& options);
-
-  // Every level not yet asked for.
-  LevelStatuses absent() const;
-  // `retired_bytes` are evicted but not yet freed. The same calls in the same order give the same decisions.
-  ResidencyDecision decide(const Walker& walker, const LevelStatuses& status, std::uint64_t retired_bytes = 0);
-
-  // Device bytes that a level counts for.
-  std::uint64_t bytes(LevelKey key) const { return bytes_[key.room][key.level]; }
-  // It has been decoded, and takes this much.
-  void learn(LevelKey key, std::uint64_t bytes);
+  ResidencyDecision decide(const Walker& walker, const LevelBook& book, std::uint64_t retired_bytes = 0) override;
 
  private:
-  struct Candidate;
-  std::vector<Candidate> candidates(const Walker& walker, const LevelStatuses& status);
-  std::vector<LevelKey> choose(const std::vector<Candidate>& order, const LevelStatuses& status) const;
-  bool is_small() const;
+  // A room that deserves something.
+  struct Candidate {
+    std::uint32_t room = 0;
+    std::uint32_t portals = ~std::uint32_t{0};  // from the walker's room, where that is known
+    double arrival_s = 1e9;
+    double share = 0.0;   // of all directions; 0 = out of sight
+    bool in_view = false;
+    double weight = 0.0;  // of an octave of its detail
+    bool near = false;    // its coarsest level is a must
+    bool fine = false;    // near enough, or in sight, for more
+  };
+  std::vector<Candidate> candidates(const Walker& walker);
+  std::vector<LevelKey> want(const std::vector<Candidate>& order, const LevelBook& book) const;
+  void fill(ResidencyDecision& decision, const LevelBook& book, std::uint64_t retired_bytes);
 
   RoomGraph graph_;
-  std::vector<std::vector<std::uint64_t>> bytes_;  // [room][level]
   ResidencyOptions options_;
-  bool all_coarse_ = false;  // every room's coarsest level is kept, wherever the walker is
-  std::int64_t room_ = -1;   // the walker's at the last decision
+  ResidencyPlanner planner_;
+  std::int64_t room_ = -1;      // the walker's at the last decision
+  bool all_coarse_ = false;     // every room's coarsest level is kept, wherever the walker is
+  std::uint32_t next_fill_ = 0; // room that is looked at next for that
 };
 
 }  // namespace probewalk

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <set>
+#include <map>
 
 namespace probewalk {
 
@@ -14,6 +14,11 @@ std::int64_t now_ns() {
       .count();
 }
 
+// From one try to the next, doubled each time.
+constexpr std::int64_t kSourceRetry_ns = 250'000'000, kSourceRetryMost_ns = 8'000'000'000;
+constexpr std::int64_t kDamageRetry_ns = 5'000'000'000, kDamageRetryMost_ns = 60'000'000'000;
+constexpr std::uint32_t kSettleTries = 5;  // what waits for everything waits for so many tries of a source
+
 }  // namespace
 
 RoomStreamer::RoomStreamer(const Manifest& manifest, const ChunkSource& source, ChunkLoader::Deliver upload,
@@ -21,39 +26,53 @@ RoomStreamer::RoomStreamer(const Manifest& manifest, const ChunkSource& source, 
     : manifest_(manifest),
       evict_(std::move(evict)),
       options_(options),
+      book_(manifest),
       residency_(manifest, options.residency),
-      status_(residency_.absent()),
       room_seen_(manifest.rooms.size(), false),
       loader_(manifest, source, std::move(upload), options.loader) {}
 
 void RoomStreamer::update(const Walker& walker) {
   ++statistics_.updates;
+  const std::int64_t now = now_ns();
   retire();
   take_arrivals();
-  decision_ = residency_.decide(walker, status_, retired_bytes_);
+  retry(now);
+  decision_ = residency_.decide(walker, book_, retired_bytes_);
+  note_wants(now);
 
-  const std::int64_t now = now_ns();
-  const std::set<LevelKey> wanted(decision_.wanted.begin(), decision_.wanted.end());
-  std::erase_if(wanted_since_ns_, [&](const auto& entry) { return !wanted.contains(entry.first); });
-  for (const LevelKey& key : decision_.wanted) {
-    if (status_[key.room][key.level] != LevelStatus::kResident) wanted_since_ns_.try_emplace(key, now);
-  }
   for (const LevelKey& key : decision_.evictions) {
     evict_(key);
-    status_[key.room][key.level] = LevelStatus::kAbsent;
-    retired_.push_back({statistics_.updates, residency_.bytes(key)});
-    retired_bytes_ += residency_.bytes(key);
-    statistics_.device_bytes -= residency_.bytes(key);
+    book_.set(key, LevelStatus::kAbsent);
+    retired_.push_back({statistics_.updates, book_.bytes(key)});
+    retired_bytes_ += book_.bytes(key);
   }
+  for (const LevelKey& key : decision_.cancellations) loader_.cancel(key);
   for (const LevelKey& key : decision_.loads) {
-    if (!loader_.request(key, residency_.bytes(key))) break;
-    status_[key.room][key.level] = LevelStatus::kLoading;
-    statistics_.device_bytes += residency_.bytes(key);
+    if (!loader_.request(key, book_.bytes(key))) break;
+    book_.set(key, LevelStatus::kLoading);
   }
-  if (decision_.coarse) ++statistics_.coarse_updates;
+  count_coarse();
+  statistics_.device_bytes = book_.held_bytes();
   statistics_.device_bytes_max = std::max(statistics_.device_bytes_max, statistics_.device_bytes + retired_bytes_);
   statistics_.queue_depth = loader_.depth();
   statistics_.queue_depth_max = std::max(statistics_.queue_depth_max, statistics_.queue_depth);
+}
+
+// Since when each level that is not there has been wanted.
+void RoomStreamer::note_wants(std::int64_t now_ns) {
+  std::map<LevelKey, std::int64_t> since;
+  for (const LevelKey& key : decision_.wanted) {
+    if (book_.status(key) == LevelStatus::kResident) continue;
+    const auto known = wanted_since_ns_.find(key);
+    since.emplace(key, known != wanted_since_ns_.end() ? known->second : now_ns);
+  }
+  wanted_since_ns_ = std::move(since);
+}
+
+void RoomStreamer::count_coarse() {
+  coarse_run_ = decision_.coarse ? coarse_run_ + 1 : 0;
+  if (decision_.coarse) ++statistics_.coarse_updates;
+  statistics_.coarse_run_max = std::max(statistics_.coarse_run_max, coarse_run_);
 }
 
 void RoomStreamer::retire() {
@@ -72,33 +91,68 @@ void RoomStreamer::take_arrivals() {
 
 void RoomStreamer::arrive(LoadResult& result) {
   const LevelKey key = result.key;
-  LevelStatus& status = status_[key.room][key.level];
   statistics_.bytes_read += result.bytes_disk;
-  statistics_.device_bytes -= residency_.bytes(key);  // what was set aside
-  if (result.refused) {
-    errors_.push_back(describe_refused(result));
-    ++statistics_.levels_refused;
-    status = LevelStatus::kAbsent;
-    residency_.learn(key, result.bytes_device);
-    return;  // wanted as before, if it still fits
+  switch (result.end) {
+    case LoadResult::End::kArrived:
+      book_.set(key, LevelStatus::kResident);
+      book_.learn(key, result.bytes_device);
+      break;
+    case LoadResult::End::kRefused:
+      errors_.push_back(describe_refused(result));
+      ++statistics_.levels_refused;
+      book_.set(key, LevelStatus::kAbsent);
+      book_.learn(key, result.bytes_device);
+      return;  // wanted as before, if it still fits
+    case LoadResult::End::kCancelled:
+      ++statistics_.levels_cancelled;
+      book_.set(key, LevelStatus::kAbsent);
+      return;
+    case LoadResult::End::kUnavailable:
+    case LoadResult::End::kBad:
+      stumble(result);
+      return;
   }
-  const auto since = wanted_since_ns_.find(key);
-  if (result.error.empty()) {
-    status = LevelStatus::kResident;
-    residency_.learn(key, result.bytes_device);
-    statistics_.device_bytes += residency_.bytes(key);
-    ++statistics_.levels_loaded;
-    if (!room_seen_[key.room]) {
-      room_seen_[key.room] = true;
-      ++statistics_.rooms_loaded;
+  ++statistics_.levels_loaded;
+  if (!room_seen_[key.room]) {
+    room_seen_[key.room] = true;
+    ++statistics_.rooms_loaded;
+  }
+  if (troubled_.erase(key) > 0) {
+    errors_.push_back(fmt::format("room {}, level {}: loaded after all", manifest_.rooms[key.room].id, key.level));
+  }
+  if (const auto since = wanted_since_ns_.find(key); since != wanted_since_ns_.end()) {
+    statistics_.need_to_resident_ns.push_back(result.finished_ns - since->second);
+    wanted_since_ns_.erase(since);
+  }
+}
+
+// It could not be loaded: the coarser level stands in until the next try.
+void RoomStreamer::stumble(const LoadResult& result) {
+  const auto [place, is_new] = troubled_.try_emplace(result.key);
+  Trouble& trouble = place->second;
+  trouble.is_damage = result.end == LoadResult::End::kBad;
+  const std::int64_t first_ns = trouble.is_damage ? kDamageRetry_ns : kSourceRetry_ns;
+  const std::int64_t last_ns = trouble.is_damage ? kDamageRetryMost_ns : kSourceRetryMost_ns;
+  trouble.retry_ns = now_ns() + std::min(last_ns, first_ns << std::min(trouble.tries, 16u));
+  ++trouble.tries;
+  book_.set(result.key, LevelStatus::kFailed);
+  ++statistics_.levels_failed;
+  if (is_new) errors_.push_back(result.error);
+}
+
+void RoomStreamer::retry(std::int64_t now_ns) {
+  for (auto& [key, trouble] : troubled_) {
+    if (trouble.retry_ns > 0 && trouble.retry_ns <= now_ns) {
+      trouble.retry_ns = 0;
+      book_.set(key, LevelStatus::kAbsent);
     }
-    if (since != wanted_since_ns_.end()) statistics_.need_to_resident_ns.push_back(result.finished_ns - since->second);
-  } else {
-    status = LevelStatus::kFailed;
-    ++statistics_.levels_failed;
-    errors_.push_back(std::move(result.error));
   }
-  if (since != wanted_since_ns_.end()) wanted_since_ns_.erase(since);
+}
+
+bool RoomStreamer::awaits_source() const {
+  return std::any_of(troubled_.begin(), troubled_.end(), [](const auto& entry) {
+    return !entry.second.is_damage && entry.second.retry_ns > 0 && entry.second.tries <= kSettleTries;
+  });
 }
 
 std::string RoomStreamer::describe_refused(const LoadResult& result) const {
@@ -117,7 +171,7 @@ bool RoomStreamer::settle(const Walker& walker, std::chrono::milliseconds at_mos
   while (true) {
     update(walker);
     if (between) between();
-    if (settled()) return true;
+    if (settled() && !awaits_source()) return true;
     if (std::chrono::steady_clock::now() >= deadline) return false;
     loader_.wait(std::chrono::milliseconds(10));
   }

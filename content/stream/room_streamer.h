@@ -27,10 +27,12 @@ struct StreamerStatistics {
   std::uint64_t bytes_read = 0;
   std::uint64_t levels_loaded = 0;
   std::uint64_t rooms_loaded = 0;  // that have had any level
-  std::uint64_t levels_failed = 0;
+  std::uint64_t levels_failed = 0;   // times that a level could not be loaded
+  std::uint64_t levels_cancelled = 0;
   std::uint64_t levels_refused = 0;  // took more than the pack states, and were planned anew
   std::uint64_t updates = 0;
   std::uint64_t coarse_updates = 0;  // the walker's room or one beside it was coarser than wanted
+  std::uint64_t coarse_run_max = 0;  // the most of them in a row
   std::uint64_t device_bytes = 0;    // resident and loading; what has been decoded by its true size
   std::uint64_t device_bytes_max = 0;
   std::size_t queue_depth = 0;
@@ -40,7 +42,8 @@ struct StreamerStatistics {
 
 class RoomStreamer {
  public:
-  // Both outlive the streamer. `upload` is called on loader threads, `evict` on the thread of update().
+  // Both outlive the streamer. `upload` is called on loader threads, `evict` on the thread of update(). What could not be
+  // loaded is tried again: at once and then ever more seldom, a damaged chunk after seconds.
   // Throws BadUsage when the budget is too small.
   RoomStreamer(const Manifest& manifest, const ChunkSource& source, ChunkLoader::Deliver upload,
                std::function<void(LevelKey)> evict, const StreamerOptions& options = {});
@@ -51,10 +54,13 @@ class RoomStreamer {
   bool settled() const { return decision_.settled; }
   const ResidencyDecision& decision() const { return decision_; }
   const StreamerStatistics& statistics() const { return statistics_; }
-  const LevelStatuses& status() const { return status_; }
+  const LevelBook& book() const { return book_; }
+  // Levels that could not be loaded and are tried again later; 0 = no trouble.
+  std::size_t troubled() const { return troubled_.size(); }
   // Every load that has finished, in that order; empty unless options.keep_loads.
   const std::vector<LoadResult>& loads() const { return loads_; }
-  // One line for each chunk that could not be loaded, or takes more than the pack states, since the last call.
+  // One line for each chunk that could not be loaded for the first time, or came after all, or takes more than the pack
+  // states, since the last call.
   std::vector<std::string> take_errors() { return std::exchange(errors_, {}); }
 
   // Updates until settled, waiting for the loader in between; for stills and for walks that may take their time.
@@ -65,6 +71,11 @@ class RoomStreamer {
   void take_arrivals();
   void retire();
   void arrive(LoadResult& result);
+  void stumble(const LoadResult& result);
+  void retry(std::int64_t now_ns);
+  void note_wants(std::int64_t now_ns);
+  void count_coarse();
+  bool awaits_source() const;
   std::string describe_refused(const LoadResult& result) const;
 
   struct Retired {
@@ -72,11 +83,19 @@ class RoomStreamer {
     std::uint64_t bytes = 0;
   };
 
+  struct Trouble {
+    std::uint32_t tries = 0;
+    bool is_damage = false;
+    std::int64_t retry_ns = 0;
+  };
+
   const Manifest& manifest_;
   std::function<void(LevelKey)> evict_;
   StreamerOptions options_;
+  LevelBook book_;
   Residency residency_;
-  LevelStatuses status_;
+  std::map<LevelKey, Trouble> troubled_;
+  std::uint64_t coarse_run_ = 0;
   ResidencyDecision decision_;
   std::map<LevelKey, std::int64_t> wanted_since_ns_;  // of what is wanted and not resident
   std::deque<Retired> retired_;

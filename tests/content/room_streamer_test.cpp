@@ -102,7 +102,7 @@ TEST(ChunkLoader, DoesNotHandOverMoreThanWasReserved) {
   EXPECT_EQ(deliveries.take().size(), 1u);
   ASSERT_TRUE(loader.request({0, 1}, taken - 1));
   const LoadResult refused = wait_for(loader, 1)[0];
-  EXPECT_TRUE(refused.refused);
+  EXPECT_EQ(refused.end, LoadResult::End::kRefused);
   EXPECT_EQ(refused.error, "");
   EXPECT_EQ(refused.bytes_device, taken);
   EXPECT_TRUE(deliveries.take().empty());
@@ -112,11 +112,12 @@ TEST(ChunkLoader, DoesNotHandOverMoreThanWasReserved) {
 class GatedSource final : public ChunkSource {
  public:
   explicit GatedSource(std::filesystem::path pack) : folder_(std::move(pack)) {}
-  std::vector<std::byte> read(const LevelEntry& level) const override {
+  std::vector<std::byte> read(const LevelEntry& level, const std::atomic<bool>& cancelled) const override {
     started_.release();
     gate_.acquire();
-    return folder_.read(level);
+    return folder_.read(level, cancelled);
   }
+  std::string name() const override { return folder_.name(); }
   void open(int readers) { gate_.release(readers); }
   void wait_for_reader() { started_.acquire(); }
 
@@ -188,8 +189,8 @@ TEST(RoomStreamer, ABadChunkCostsTheFineLevelNotTheWalk) {
   Deliveries deliveries;
   RoomStreamer streamer(m, source, deliveries.sink(), [](LevelKey) {});
   EXPECT_TRUE(streamer.settle({{1.0, 1.6, -2.0}, {}}, 10s));
-  EXPECT_EQ(streamer.status()[0][0], LevelStatus::kResident);
-  EXPECT_EQ(streamer.status()[0][1], LevelStatus::kFailed);
+  EXPECT_EQ(streamer.book().status({0, 0}), LevelStatus::kResident);
+  EXPECT_EQ(streamer.book().status({0, 1}), LevelStatus::kFailed);
   EXPECT_EQ(streamer.statistics().levels_failed, 1u);
   EXPECT_THAT(streamer.take_errors(), testing::ElementsAre(HasSubstr("77 of")));
   EXPECT_THAT(streamer.take_errors(), testing::IsEmpty());
@@ -271,10 +272,13 @@ TEST(RoomStreamer, APackThatStatesTooLittleStaysWithinTheBudgetAndIsSaidSo) {
   ASSERT_EQ(errors.size(), 6u);
   EXPECT_THAT(errors[0], HasSubstr("where the pack states " + std::to_string(stated)));
   EXPECT_LE(streamer.statistics().device_bytes_max, options.residency.budget_bytes);
-  std::size_t refused = 0;
-  for (const LoadResult& load : streamer.loads()) refused += load.refused;
+  std::size_t refused = 0, arrived = 0;
+  for (const LoadResult& load : streamer.loads()) {
+    refused += load.end == LoadResult::End::kRefused;
+    arrived += load.end == LoadResult::End::kArrived;
+  }
   EXPECT_EQ(refused, 6u);
-  EXPECT_EQ(streamer.loads().size() - refused, streamer.statistics().levels_loaded);
+  EXPECT_EQ(arrived, streamer.statistics().levels_loaded);
 }
 
 TEST(RoomStreamer, UpdateNeverWaitsForTheLoader) {

@@ -26,7 +26,6 @@ void add_common_options(CLI::App& command, CommonOptions& common);
 // stderr. cancelled() is true after the first Ctrl-C.
 std::unique_ptr<Progress> make_progress(const CommonOptions& common);
 
-
 // Set by SIGINT and SIGTERM; a second signal ends the program at once.
 extern std::atomic<bool> g_interrupted;
 
@@ -38,6 +37,7 @@ void add_render_command(CLI::App& app, CommonOptions& common);
 void add_trace_command(CLI::App& app, CommonOptions& common);
 void add_bench_command(CLI::App& app, CommonOptions& common);
 void add_report_command(CLI::App& app, CommonOptions& common);
+void add_simulate_command(CLI::App& app, CommonOptions& common);
 void add_stability_command(CLI::App& app, CommonOptions& common);
 
 }  // namespace probewalk

@@ -59,6 +59,7 @@ int run(int argc, char** argv) {
   add_trace_command(app, common);
   add_bench_command(app, common);
   add_report_command(app, common);
+  add_simulate_command(app, common);
   add_stability_command(app, common);
   app.require_subcommand(0, 1);
   try {

@@ -1,0 +1,111 @@
+#include "content/stream/level_choice.h"
+
+#include <algorithm>
+#include <queue>
+#include <tuple>
+
+namespace probewalk {
+
+namespace {
+
+class Chooser {
+ public:
+  Chooser(std::span<const RoomWorth> rooms, const LevelBook& book, std::uint64_t left_bytes, double sticky)
+      : rooms_(rooms), book_(book), left_bytes_(left_bytes), sticky_(sticky), level_(rooms.size(), 0) {}
+
+  bool fits(std::size_t k, std::uint32_t level) const { return bytes(k, level) <= left_bytes_ + bytes(k, level_[k]); }
+
+  void take(std::size_t k, std::uint32_t level) {
+    worth_ += gain(k, level);
+    left_bytes_ = left_bytes_ + bytes(k, level_[k]) - bytes(k, level);
+    level_[k] = level;
+  }
+
+  void keep_shown() {
+    for (std::size_t k = 1; k < rooms_.size(); ++k) {
+      if (!rooms_[k].is_kept) continue;
+      const int shown = book_.shown(rooms_[k].room);
+      if (shown > 0 && fits(k, static_cast<std::uint32_t>(shown))) take(k, static_cast<std::uint32_t>(shown));
+    }
+  }
+
+  void fill() {
+    for (std::size_t k = 1; k < rooms_.size(); ++k) {
+      if (rooms_[k].is_fine) push_best(k);
+    }
+    while (!steps_.empty()) {
+      const Step step = steps_.top();
+      steps_.pop();
+      if (fits(step.k, step.level)) take(step.k, step.level);
+      push_best(step.k);  // one beyond it, or one that still fits
+    }
+  }
+
+  double worth() const { return worth_; }
+  std::vector<std::uint32_t> take_levels() { return std::move(level_); }
+
+ private:
+  struct Step {
+    double density = 0.0;  // worth a byte
+    std::size_t k = 0;
+    std::uint32_t level = 0;
+    bool operator<(const Step& other) const { return std::tuple(density, other.k) < std::tuple(other.density, k); }
+  };
+
+  std::uint64_t bytes(std::size_t k, std::uint32_t level) const {
+    return level == 0 ? 0 : book_.bytes({rooms_[k].room, level});
+  }
+
+  double gain(std::size_t k, std::uint32_t level) const {
+    const LevelStatus status = book_.status({rooms_[k].room, level});
+    const bool is_there = status == LevelStatus::kResident || status == LevelStatus::kLoading;
+    const double octaves = book_.quality({rooms_[k].room, level}) - book_.quality({rooms_[k].room, level_[k]});
+    return rooms_[k].weight * octaves * (is_there ? sticky_ : 1.0);
+  }
+
+  void push_best(std::size_t k) {
+    Step best;
+    for (std::uint32_t level = level_[k] + 1; level < book_.levels(rooms_[k].room); ++level) {
+      if (book_.status({rooms_[k].room, level}) == LevelStatus::kFailed || !fits(k, level)) continue;
+      const std::uint64_t now = bytes(k, level_[k]), more = std::max(bytes(k, level), now + 1) - now;
+      const double density = gain(k, level) / static_cast<double>(more);
+      if (density > best.density) best = {density, k, level};
+    }
+    if (best.level > 0) steps_.push(best);
+  }
+
+  std::span<const RoomWorth> rooms_;
+  const LevelBook& book_;
+  std::uint64_t left_bytes_;
+  double sticky_;
+  double worth_ = 0.0;
+  std::vector<std::uint32_t> level_;
+  std::priority_queue<Step> steps_;
+};
+
+}  // namespace
+
+std::vector<std::uint32_t> choose_levels(std::span<const RoomWorth> rooms, const LevelBook& book,
+                                         std::uint64_t left_bytes, double sticky) {
+  if (rooms.empty()) return {};
+  std::vector<std::uint32_t> best;
+  double best_worth = -1.0;
+  const std::uint32_t own_room = rooms.front().room;
+  for (std::uint32_t own = std::max(book.levels(own_room), 1u); own-- > 0;) {
+    if (own > 0 && book.status({own_room, own}) == LevelStatus::kFailed) continue;
+    Chooser chooser(rooms, book, left_bytes, sticky);
+    if (own > 0) {
+      if (!chooser.fits(0, own)) continue;
+      chooser.take(0, own);
+    }
+    chooser.keep_shown();
+    chooser.fill();
+    if (chooser.worth() > best_worth) {  // of equals the finer
+      best_worth = chooser.worth();
+      best = chooser.take_levels();
+    }
+  }
+  return best;
+}
+
+}  // namespace probewalk
