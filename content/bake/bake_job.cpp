@@ -15,6 +15,7 @@
 #include "content/bake/map_store.h"
 #include "content/bake/plan/plan_report.h"
 #include "content/bake/plan_picture.h"
+#include "content/bake/probe_lattice.h"
 #include "content/error.h"
 #include "content/pack/pack_format.h"
 #include "content/pack/pack_io.h"
@@ -26,10 +27,6 @@ namespace probewalk {
 namespace fs = std::filesystem;
 
 namespace {
-
-// Probes stand on this lattice, so that their offsets from a room's origin are exact in float, in the pack and on the
-// device, and are the very positions that rays were cast from.
-constexpr double kPositionSteps_per_m = 4096.0;
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -98,8 +95,6 @@ std::string hash_options(const BakeOptions& options, const Scene& scene) {
   const std::string all = text + planned;
   return content_hash(std::as_bytes(std::span(all)));
 }
-
-glm::dvec3 on_lattice(glm::dvec3 p) { return glm::round(p * kPositionSteps_per_m) / kPositionSteps_per_m; }
 
 class BakeJob {
  public:

@@ -8,6 +8,7 @@
 
 #include "content/bake/placement/grid_choice.h"
 #include "content/bake/placement/probe_sites.h"
+#include "content/bake/probe_lattice.h"
 #include "content/error.h"
 
 namespace probewalk {
@@ -20,13 +21,6 @@ constexpr std::size_t kFewestInRoom = 8, kMostInRoom = 40;
 constexpr std::size_t kPlacesOfNeed = 10;
 constexpr double kLeastGain_rays = 1.0;
 constexpr std::size_t kNeighboursTried = 6;
-
-// Probes stand on this lattice, so that their offsets from a room's origin are exact in float, in the pack and on the
-// device, and are the very positions that rays were cast from.
-constexpr double kPositionSteps_per_m = 4096.0;
-glm::dvec3 on_lattice(glm::dvec3 p) {
-  return glm::round(p * kPositionSteps_per_m) / kPositionSteps_per_m;
-}
 
 // `count` of the places, each as far from those before as can be; the first is the one nearest to their middle.
 std::vector<glm::dvec3> spread_out(const std::vector<glm::dvec3>& places, std::size_t count) {
