@@ -15,6 +15,7 @@ namespace {
 constexpr float kFadeStart = 0.010f;
 constexpr float kFadeEnd = 0.003f;
 constexpr float kRankFade = 1.5f;  // the weakest light with a ray is full only this far above the first without
+constexpr float kLeastSay = 1e-3f;  // share of a faded light's vote on what those without a ray are worth
 constexpr float kFarAway_m = 1e6f;
 
 float smooth_step(float low, float high, float x) {
@@ -163,13 +164,16 @@ glm::vec3 DirectLight::irradiance(glm::vec3 position_m, glm::vec3 geometric_norm
                                   std::uint64_t& rays_cast) const {
   const Receiver receiver{position_m, geometric_normal, normal};
   Strongest strongest;
+  glm::vec3 arriving(0.0f);  // unshadowed, from all
   for (const PunctualEmitter& emitter : emitters_.lights) {
     const glm::vec3 value = unshadowed(emitter.light, receiver);
+    arriving += value;
     strongest.offer({luminance(value), value, &emitter, nullptr, 1});
   }
   for (const EmissivePatch& patch : emitters_.patches) {
     if (!(upper_bound(patch, receiver) > strongest.threshold())) continue;
     const glm::vec3 value = unshadowed(patch, receiver);
+    arriving += value;
     strongest.offer({luminance(value), value, nullptr, &patch, 1});
   }
   if (strongest.count() == 0) return glm::vec3(0.0f);
@@ -182,18 +186,24 @@ glm::vec3 DirectLight::irradiance(glm::vec3 position_m, glm::vec3 geometric_norm
   share_out_rays(strongest, count);
 
   const glm::vec3 origin = position_m + geometric_normal * ray_offset_m(position_m);
-  glm::vec3 sum(0.0f);
+  glm::vec3 sum(0.0f), traced(0.0f);
+  float seen_weight = 0.0f, weights = 0.0f;
   for (int k = 0; k < count; ++k) {
     const Candidate& candidate = strongest[k];
     float keep = smooth_step(kFadeEnd, kFadeStart, candidate.estimate / total);
     if (left_out > 0.0f) keep *= smooth_step(1.0f, kRankFade, candidate.estimate / left_out);
-    if (!(keep > 0.0f)) continue;
     const float seen = candidate.light
                            ? visible_fraction(rays_, *candidate.light, origin, rays_cast)
                            : visible_fraction(rays_, *candidate.patch, candidate.rays, receiver, origin, rays_cast);
     sum += candidate.irradiance * (keep * seen);
+    traced += candidate.irradiance * keep;
+    // Rays that fade still speak where none is full: equal lights must not fade one another out.
+    const float weight = candidate.estimate * (keep + kLeastSay);
+    seen_weight += weight * seen;
+    weights += weight;
   }
-  return sum;
+  // What has no ray of its own is as visible as what has.
+  return sum + glm::max(arriving - traced, glm::vec3(0.0f)) * (weights > 0.0f ? seen_weight / weights : 0.0f);
 }
 
 }  // namespace probewalk

@@ -1,5 +1,7 @@
 // Light that arrives straight from the emitters, by next-event estimation with a fixed pattern: the same point always
-// gets the same answer, so there is no noise. Where more lights matter than there are rays, the weakest fade out.
+// gets the same answer, so there is no noise. Where more lights matter than there are rays, the weaker ones' rays fade, and
+// their light counts as visible as that of the others is on average: no light is lost, and shadows stay those of the
+// strongest.
 #pragma once
 
 #include <cstdint>

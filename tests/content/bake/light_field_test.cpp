@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include "content/bake/bake_probe.h"
 #include "content/bake/light_field.h"
@@ -49,6 +50,68 @@ TEST(LightField, LightsAPlaneByAPointExactly) {
     const float expected = 0.6f * std::numbers::inv_pi_v<float> * 300.0f * 2.0f / (distance * distance * distance);
     EXPECT_NEAR(light.along({x, 1.0f, 0.3f * 0.0f}, {0, -1, 0}, 0.001f).r / expected, 1.0f, 1e-3f);
     EXPECT_EQ(light.along({x, -1.0f, 0.0f}, {0, 1, 0}, 0.001f).r, 0.0f) << "the plane's other side is dark";
+  }
+}
+
+// However many lights matter, none may be lost: there are eight shadow rays a point.
+TEST(LightField, ManyEqualLightsAddUp) {
+  constexpr float kAll_cd = 300.0f;
+  for (const int lights : {4, 8, 9, 16, 32}) {
+    Scene scene;
+    plain::add_material(scene, glm::vec3(0.5f));
+    plain::add_quad(scene, {-5, 0, -5}, {-5, 0, 5}, {5, 0, 5}, {5, 0, -5}, 0);
+    for (int k = 0; k < lights; ++k) {
+      const float angle = 2.0f * std::numbers::pi_v<float> * float(k) / float(lights);
+      scene.lights.push_back(
+          plain::point_light({2.0f * std::cos(angle), 2.0f, 2.0f * std::sin(angle)}, kAll_cd / float(lights)));
+    }
+    const RayScene rays(scene);
+    SilentProgress progress;
+    LightOptions options = quick();
+    options.bounces = 0;
+    const LightField light(scene, rays, options, progress);
+    const float expected = 0.5f * std::numbers::inv_pi_v<float> * kAll_cd * 2.0f / std::pow(8.0f, 1.5f);
+    EXPECT_NEAR(light.along({0, 1, 0}, {0, -1, 0}, 1e-3f).r / expected, 1.0f, 1e-3f) << lights << " lights";
+  }
+}
+
+// Unequal lights around a box that throws shadows, against the sum of scenes with one light each.
+TEST(LightField, ManyLightsShareTheirShadowsRoughly) {
+  LightOptions options = quick();
+  options.samples = 1;
+  options.cache_spacing_m = 2.0;
+  options.bounces = 0;
+  constexpr int kPoints = 256;
+  const auto spread = [](double start, double step, int k) { return float(-3.0 + 6.0 * std::fmod(start + step * k, 1.0)); };
+  for (const int lights : {4, 9, 16, 32}) {
+    const auto add_light_of = [&](int first, int end, std::vector<double>& radiance) {
+      Scene scene;
+      plain::add_material(scene, glm::vec3(0.5f));
+      plain::add_quad(scene, {-5, 0, -5}, {-5, 0, 5}, {5, 0, 5}, {5, 0, -5}, 0);
+      plain::add_box(scene, {-0.5f, 0.2f, -0.5f}, {0.5f, 1.0f, 0.5f}, 0);
+      for (int k = first; k < end; ++k) {
+        scene.lights.push_back(plain::point_light({spread(0.3, 0.7548776, k), 2.5f, spread(0.3, 0.5698403, k)},
+                                                  100.0f * float(1 + k % 3)));
+      }
+      const RayScene rays(scene);
+      SilentProgress progress;
+      const LightField light(scene, rays, options, progress);
+      for (int i = 0; i < kPoints; ++i) {
+        const glm::vec3 above(spread(0.5, 0.7548776, i), 0.1f, spread(0.5, 0.5698403, i));
+        radiance[std::size_t(i)] += double(light.along(above, {0, -1, 0}, 1e-3f).r);
+      }
+    };
+    std::vector<double> truth(kPoints), together(kPoints);
+    for (int k = 0; k < lights; ++k) add_light_of(k, k + 1, truth);
+    add_light_of(0, lights, together);
+    double sum = 0.0, all = 0.0, off = 0.0;
+    for (std::size_t i = 0; i < kPoints; ++i) {
+      sum += truth[i];
+      all += together[i];
+      off += std::abs(together[i] - truth[i]);
+    }
+    EXPECT_NEAR(all / sum, 1.0, 0.05) << lights << " lights";
+    EXPECT_LT(off / sum, lights <= 8 ? 1e-4 : 0.06) << lights << " lights";
   }
 }
 
