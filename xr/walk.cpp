@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "content/error.h"
+#include "content/stream/open_pack.h"
 #include "xr/headset_watch.h"
 #include "xr/latency/clock.h"
 #include "xr/latency/run_files.h"
@@ -219,7 +220,7 @@ void Walk::save() {
 }  // namespace
 
 WalkResult walk(const WalkOptions& options, Progress& progress) {
-  const Pack pack = Pack::open(options.pack);
+  const Pack pack = open_pack(options.pack.string());
   return Walk(options, pack, progress).run();
 }
 

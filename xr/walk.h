@@ -9,6 +9,7 @@
 #include "content/baseline/baseline_maps.h"
 #include "content/baseline/method.h"
 #include "content/progress.h"
+#include "content/stream/chunk_source.h"
 #include "content/stream/residency.h"
 #include "xr/display.h"
 #include "xr/latency/ledger.h"
@@ -17,7 +18,7 @@
 namespace probewalk {
 
 struct WalkOptions {
-  std::filesystem::path pack;
+  std::filesystem::path pack;                    // a folder, or an address (http:// or https://)
   DisplayOptions display;
   std::optional<std::filesystem::path> path;     // replayed; overrides the views of every display
   std::optional<std::filesystem::path> record;   // the path walked, with views, is written here
@@ -29,6 +30,7 @@ struct WalkOptions {
   std::optional<bool> settle;                    // wait for the rooms that each pose wants; default: offscreen only
   std::uint64_t budget_bytes = kUnlimitedBudget; // device memory for probes
   unsigned loader_threads = 1;
+  CacheOptions cache;                            // of a pack on a web server
   std::uint32_t samples = 1;                     // rays of a pixel at an edge: 1, 2 or 4
   std::string foveation = "off";                 // a name of foveation_levels()
   TracerChoice choice;                           // how rays are answered

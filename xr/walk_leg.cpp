@@ -40,7 +40,7 @@ WalkLeg::WalkLeg(const WalkOptions& options, const Pack& pack, const Display& di
       progress_(progress),
       settle_(options.settle.value_or(source_.kind() == "offscreen" && !books.left_ns)),
       rooms_(pack, *display.device,
-             {options.budget_bytes, options.loader_threads, options.report.has_value(), !settle_}, progress),
+             {options.budget_bytes, options.loader_threads, options.cache, options.report.has_value(), !settle_}, progress),
       baselines_(options.choice.needs_maps() && options.maps != nullptr
                      ? std::make_unique<BaselineStore>(*display.device, *options.maps, options.choice)
                      : nullptr),

@@ -15,10 +15,13 @@ constexpr auto kSettlePatience = std::chrono::minutes(5);
 constexpr double kVelocitySmoothing_s = 0.2;  // head bob and sway average out
 constexpr double kJump_m = 0.5;               // further in one frame is a teleport, not a motion
 
-StreamerOptions streamer_options(const WalkRoomsOptions& options) {
+StreamerOptions streamer_options(const WalkRoomsOptions& options, const ChunkSource& source) {
   StreamerOptions streamer;
   streamer.residency.budget_bytes = options.budget_bytes;
-  streamer.loader.threads = options.threads;
+  // Threads that wait for a far source do not compute.
+  streamer.loader.threads = std::max(options.threads, source.parallel_reads());
+  streamer.loader.decoders = options.threads;
+  streamer.residency.most_loads = std::max(streamer.residency.most_loads, source.parallel_reads());
   streamer.retire_updates = kFrameSlots + 1;
   streamer.keep_loads = options.keep_loads;
   return streamer;
@@ -51,13 +54,13 @@ WalkRooms::WalkRooms(const Pack& pack, const Device& device, const WalkRoomsOpti
     : pack_(pack),
       progress_(progress),
       options_(options),
-      source_(pack.path()),
+      source_(open_source(pack.path().string(), options.cache)),
       store_(device, pack.manifest().grid, static_cast<std::uint32_t>(pack.manifest().probe_positions_m.size()),
              ProbeStoreOptions{.frame_slots = kFrameSlots, .fade_frames = options.fade_levels ? kLevelFadeFrames : 0}),
       free_air_(pack.manifest().grid, pack.manifest().probe_positions_m.size()),
       streamer_(
-          pack.manifest(), source_, [this](LoadedLevel&& loaded) { deliver(std::move(loaded)); },
-          [this](LevelKey key) { store_.evict(key.room, key.level); }, streamer_options(options)) {}
+          pack.manifest(), *source_, [this](LoadedLevel&& loaded) { deliver(std::move(loaded)); },
+          [this](LevelKey key) { store_.evict(key.room, key.level); }, streamer_options(options, *source_)) {}
 
 // On a loader thread.
 void WalkRooms::deliver(LoadedLevel&& loaded) {

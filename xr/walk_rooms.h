@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 
 #include "content/pack/pack_io.h"
@@ -20,7 +21,8 @@ namespace probewalk {
 
 struct WalkRoomsOptions {
   std::uint64_t budget_bytes = kUnlimitedBudget;
-  unsigned threads = 1;
+  unsigned threads = 1;      // that decode
+  CacheOptions cache;        // of a pack on a web server
   bool keep_loads = false;   // for a report: facts() lists them
   bool fade_levels = false;  // a finer level takes over gradually
 };
@@ -56,7 +58,7 @@ class WalkRooms {
   const Pack& pack_;
   Progress& progress_;
   WalkRoomsOptions options_;
-  FolderSource source_;
+  std::unique_ptr<ChunkSource> source_;
   ProbeStore store_;
   FreeAir free_air_;
   RoomStreamer streamer_;  // its threads hand rooms to the store: they end first

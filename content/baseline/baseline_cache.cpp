@@ -52,17 +52,6 @@ std::string baseline_file_name(const BaselineKey& key) {
   return content_hash(key_bytes(key)) + ".baseline";
 }
 
-fs::path default_baseline_folder() {
-  // The specification has relative paths ignored.
-  const auto absolute = [](const char* name) {
-    const char* value = std::getenv(name);
-    return value != nullptr && fs::path(value).is_absolute() ? fs::path(value) : fs::path();
-  };
-  if (const fs::path cache = absolute("XDG_CACHE_HOME"); !cache.empty()) return cache / "probewalk";
-  if (const fs::path home = absolute("HOME"); !home.empty()) return home / ".cache" / "probewalk";
-  return fs::temp_directory_path() / "probewalk";
-}
-
 std::optional<BaselineMaps> read_baseline_file(const fs::path& file, const BaselineKey& key, std::string* why) {
   const auto refuse = [&](std::string reason) -> std::optional<BaselineMaps> {
     if (why != nullptr) *why = fmt::format("{} {}", file.string(), reason);

@@ -26,9 +26,6 @@ BaselineKey baseline_key(const Scene& scene, const Pack& pack, int n);
 // Name of the key's file within a folder.
 std::string baseline_file_name(const BaselineKey& key);
 
-// $XDG_CACHE_HOME/probewalk, else $HOME/.cache/probewalk, else probewalk in the system's folder of temporary files.
-std::filesystem::path default_baseline_folder();
-
 // Empty when there is no such file or it cannot be used; `why` then says so, and stays empty when there is none.
 std::optional<BaselineMaps> read_baseline_file(const std::filesystem::path& file, const BaselineKey& key,
                                                std::string* why = nullptr);

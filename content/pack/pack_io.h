@@ -50,6 +50,8 @@ class PackWriter {
 
 class Pack {
  public:
+  // A pack whose list of rooms is known; `path` is what it is called.
+  Pack(std::filesystem::path path, Manifest manifest) : path_(std::move(path)), manifest_(std::move(manifest)) {}
   // Reads and checks the manifest. Throws BadInput: missing, foreign, truncated, edited.
   static Pack open(const std::filesystem::path& pack);
   const Manifest& manifest() const { return manifest_; }

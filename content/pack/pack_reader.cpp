@@ -59,11 +59,7 @@ Pack Pack::open(const fs::path& pack) {
                                "command again to go on", pack.string()));
   }
   const std::vector<std::byte> bytes = read_file(file, PackLimits::kManifestBytes);
-  Pack opened;
-  opened.path_ = pack;
-  opened.manifest_ =
-      parse_manifest(std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size()), file.string());
-  return opened;
+  return Pack(pack, parse_manifest(std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size()), file.string()));
 }
 
 std::vector<std::byte> Pack::read_chunk(const LevelEntry& level) const {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "content/error.h"
+#include "content/stream/open_pack.h"
 #include "tools/probewalk/commands.h"
 #include "tools/probewalk/foveation_option.h"
 #include "tools/probewalk/method_options.h"
@@ -26,10 +27,10 @@ struct WalkArguments {
   WalkOptions walk;
   MethodOptions method;
   std::string eye_size;
-  std::string path, record, report, pictures;
+  std::string path, record, report, pictures, cache;
   std::uint64_t frames = 0;
   double seconds = 0.0;
-  std::uint64_t budget_mib = 0;
+  std::uint64_t budget_mib = 0, cache_mib = 0;
   bool settle = false, realtime = false;
   ShownEyes mirror = ShownEyes::kBoth;
   CLI::Option* mirror_option = nullptr;
@@ -97,6 +98,8 @@ void run_walk(WalkArguments arguments, const CommonOptions& common) {
   if (arguments.mirror == ShownEyes::kNone && walk_options.display.choice == DisplayChoice::kWindow) {
     throw BadUsage("--mirror off leaves a window nothing to show; it is for headsets");
   }
+  if (!arguments.cache.empty()) walk_options.cache.folder = arguments.cache;
+  if (arguments.cache_mib > 0) walk_options.cache.limit_bytes = arguments.cache_mib << 20;
   walk_options.command = own_command_line();
 
   walk_options.choice = chosen_tracer(arguments.method);
@@ -106,7 +109,7 @@ void run_walk(WalkArguments arguments, const CommonOptions& common) {
   const std::unique_ptr<Progress> progress = make_progress(common);
   std::unique_ptr<BaselineMaps> maps;
   if (walk_options.choice.needs_maps()) {
-    maps = chosen_maps(walk_options.choice, arguments.method, Pack::open(walk_options.pack), std::nullopt, common.threads,
+    maps = chosen_maps(walk_options.choice, arguments.method, open_pack(walk_options.pack.string()), std::nullopt, common.threads,
                        *progress);
     walk_options.maps = maps.get();
   }
@@ -132,11 +135,12 @@ void add_walk_command(CLI::App& app, CommonOptions& common) {
       "  probewalk walk house.probes                                      the first display that answers\n"
       "  probewalk walk house.probes --frames 600 --report report/        with a report of its latency\n"
       "  probewalk walk house.probes --display headset --record walk.jsonl\n"
+      "  probewalk walk https://example.org/house.probes                  from a web server that has the folder\n"
       "  probewalk walk house.probes --display offscreen --path walk.jsonl --save-frames pictures/\n"
       "A replayed path decides what every display shows; in a headset it plays like a film.");
   auto arguments = std::make_shared<WalkArguments>();
   WalkOptions& walk_options = arguments->walk;
-  command->add_option("pack", walk_options.pack, "The pack, a folder NAME.probes")->required();
+  command->add_option("pack", walk_options.pack, "The pack: a folder NAME.probes, or the address of one, https://…/NAME.probes")->required();
   const std::map<std::string, DisplayChoice> displays{{"auto", DisplayChoice::kAuto},
                                                       {"headset", DisplayChoice::kHeadset},
                                                       {"window", DisplayChoice::kWindow},
@@ -158,6 +162,9 @@ void add_walk_command(CLI::App& app, CommonOptions& common) {
       ->capture_default_str();
   add_foveation_option(*command, walk_options.foveation);
   command->add_option("--device-budget", arguments->budget_mib, "Device memory for probes, MiB (default: unlimited)")
+      ->check(CLI::Range(1ull, 1ull << 24));
+  command->add_option("--cache", arguments->cache, "Where chunks of a pack on a web server are kept (default: the user's cache)");
+  command->add_option("--cache-limit", arguments->cache_mib, "MiB that they may take there (default: 8192)")
       ->check(CLI::Range(1ull, 1ull << 24));
   command->add_option("--report", arguments->report, "Write frames.csv, summary.json, trace.json and index.html here");
   const std::map<std::string, ShownEyes> eyes{

@@ -5,6 +5,7 @@
 
 #include <map>
 
+#include "content/cache_folder.h"
 #include "content/baseline/baseline_cache.h"
 #include "content/error.h"
 #include "tools/probewalk/reference_picture.h"
@@ -134,7 +135,7 @@ std::unique_ptr<BaselineMaps> chosen_maps(const TracerChoice& choice, const Meth
   const int n = options.map_resolution != 0 ? options.map_resolution : finest_geometry_size(pack.manifest());
   tbb::task_arena arena(threads > 0 ? threads : tbb::task_arena::automatic);
   return arena.execute([&] {
-    return std::make_unique<BaselineMaps>(cached_baseline_maps(scene, pack, n, default_baseline_folder(), progress));
+    return std::make_unique<BaselineMaps>(cached_baseline_maps(scene, pack, n, default_cache_folder(), progress));
   });
 }
 

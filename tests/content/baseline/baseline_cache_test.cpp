@@ -1,3 +1,4 @@
+#include "content/cache_folder.h"
 #include "content/baseline/baseline_cache.h"
 
 #include <gtest/gtest.h>
@@ -131,9 +132,9 @@ TEST(BaselineFolder, FollowsTheEnvironment) {
   const char* old_cache = std::getenv("XDG_CACHE_HOME");
   const std::string kept = old_cache != nullptr ? old_cache : "";
   ::setenv("XDG_CACHE_HOME", "/tmp/elsewhere", 1);
-  EXPECT_EQ(default_baseline_folder(), fs::path("/tmp/elsewhere/probewalk"));
+  EXPECT_EQ(default_cache_folder(), fs::path("/tmp/elsewhere/probewalk"));
   ::setenv("XDG_CACHE_HOME", "relative", 1);
-  EXPECT_TRUE(default_baseline_folder().is_absolute());
+  EXPECT_TRUE(default_cache_folder().is_absolute());
   if (old_cache != nullptr) {
     ::setenv("XDG_CACHE_HOME", kept.c_str(), 1);
   } else {

@@ -7,6 +7,7 @@
 #include <memory>
 #include <set>
 
+#include "content/cache_folder.h"
 #include "content/baseline/baseline_cache.h"
 #include "content/error.h"
 #include "content/scene/embree_query.h"
@@ -176,7 +177,7 @@ const BaselineMaps* SceneBench::maps_of(int size) {
   if (maps_.n != size) {
     maps_ = {};  // the old ones make room first
     maps_ = cached_baseline_maps(truth_->scene(), pack_, size,
-                                 options_.cache.empty() ? default_baseline_folder() : options_.cache, progress_);
+                                 options_.cache.empty() ? default_cache_folder() : options_.cache, progress_);
   }
   return &maps_;
 }

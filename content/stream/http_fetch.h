@@ -1,0 +1,42 @@
+// One file from a web server, as far as it goes: retries with growing pauses, resumed where it broke off, given up when
+// nobody wants it any more.
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace probewalk {
+
+struct FetchLimits {
+  int attempts = 4;
+  double first_pause_s = 0.25;  // before the second attempt; doubles
+  long connect_timeout_s = 10;
+  long stall_timeout_s = 15;  // with less than a byte a second
+};
+
+// Connections are kept and used again. Thread-safe: as many fetches at a time as threads ask.
+class HttpFetcher {
+ public:
+  explicit HttpFetcher(const FetchLimits& limits = {});
+  ~HttpFetcher();
+  HttpFetcher(const HttpFetcher&) = delete;
+  HttpFetcher& operator=(const HttpFetcher&) = delete;
+
+  // The whole body; at most limit_bytes of it are ever held. Throws BadInput naming the address and what happened: at once
+  // where trying again is no use (404 and its like, an answer that is too long), else after the last attempt. Throws
+  // Interrupted soon after `cancelled` turns true.
+  std::vector<std::byte> get(const std::string& url, std::uint64_t limit_bytes, const std::atomic<bool>& cancelled) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+bool is_http_url(const std::string& text);
+
+}  // namespace probewalk
