@@ -65,7 +65,9 @@ void pause(double seconds, const std::atomic<bool>& cancelled) {
   }
 }
 
-bool may_be_otherwise_later(long status) { return status == 408 || status == 429 || status >= 500; }
+bool may_be_otherwise_later(long status) {
+  return status == 408 || status == 429 || status >= 500;
+}
 
 }  // namespace
 
@@ -148,13 +150,17 @@ std::vector<std::byte> HttpFetcher::get(const std::string& url, std::uint64_t li
     }
     if (status == 416) body.clear();  // the file has changed under us
     reason = code != CURLE_OK ? curl_easy_strerror(code) : fmt::format("the server answers {}", status);
-    if (code == CURLE_OK && status != 416 && !may_be_otherwise_later(status)) throw BadInput(fmt::format("{}: {}", url, reason));
+    if (code == CURLE_OK && status != 416 && !may_be_otherwise_later(status))
+      throw BadInput(fmt::format("{}: {}", url, reason));
     // An address that cannot be read does not become one.
-    if (code == CURLE_URL_MALFORMAT || code == CURLE_UNSUPPORTED_PROTOCOL) throw BadInput(fmt::format("{}: {}", url, reason));
+    if (code == CURLE_URL_MALFORMAT || code == CURLE_UNSUPPORTED_PROTOCOL)
+      throw BadInput(fmt::format("{}: {}", url, reason));
   }
   throw BadInput(fmt::format("{}: {}, {} times in a row", url, reason, impl_->limits.attempts));
 }
 
-bool is_http_url(const std::string& text) { return text.starts_with("http://") || text.starts_with("https://"); }
+bool is_http_url(const std::string& text) {
+  return text.starts_with("http://") || text.starts_with("https://");
+}
 
 }  // namespace probewalk

@@ -27,10 +27,11 @@ class HttpFetcher {
   HttpFetcher(const HttpFetcher&) = delete;
   HttpFetcher& operator=(const HttpFetcher&) = delete;
 
-  // The whole body; at most limit_bytes of it are ever held. Throws BadInput naming the address and what happened: at once
-  // where trying again is no use (404 and its like, an answer that is too long), else after the last attempt. Throws
-  // Interrupted soon after `cancelled` turns true.
-  std::vector<std::byte> get(const std::string& url, std::uint64_t limit_bytes, const std::atomic<bool>& cancelled) const;
+  // The whole body; at most limit_bytes of it are ever held. Throws BadInput naming the address and what happened: at
+  // once where trying again is no use (404 and its like, an answer that is too long), else after the last attempt.
+  // Throws Interrupted soon after `cancelled` turns true.
+  std::vector<std::byte> get(const std::string& url, std::uint64_t limit_bytes,
+                             const std::atomic<bool>& cancelled) const;
 
  private:
   struct Impl;

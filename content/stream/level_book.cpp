@@ -9,8 +9,12 @@ namespace probewalk {
 
 namespace {
 
-bool is_held(LevelStatus status) { return status == LevelStatus::kLoading || status == LevelStatus::kResident; }
-bool is_open(LevelStatus status) { return status == LevelStatus::kAbsent || status == LevelStatus::kLoading; }
+bool is_held(LevelStatus status) {
+  return status == LevelStatus::kLoading || status == LevelStatus::kResident;
+}
+bool is_open(LevelStatus status) {
+  return status == LevelStatus::kAbsent || status == LevelStatus::kLoading;
+}
 
 // Errors count where all levels have one and they fall from level to level.
 bool has_errors(const RoomEntry& room) {
@@ -26,8 +30,8 @@ bool has_errors(const RoomEntry& room) {
 
 std::uint64_t planned_bytes(const RoomEntry& room, const LevelEntry& level) {
   const auto bytes = [&](std::uint64_t cut_cells) {
-    return room.probe_count * device_probe_bytes(static_cast<int>(level.geometry_size),
-                                                 static_cast<int>(level.radiance_size), cut_cells);
+    return room.probe_count *
+           device_probe_bytes(static_cast<int>(level.geometry_size), static_cast<int>(level.radiance_size), cut_cells);
   };
   const std::uint64_t cells = std::uint64_t{level.geometry_size} * level.geometry_size;
   return std::clamp(level.bytes_device, bytes(0), bytes(cells)) + room.probe_count * kMostPadding_bytes;

@@ -1,5 +1,5 @@
-// What is where: the status and the device bytes of every level of every room, with the sums that decisions need kept as
-// they change, so that no frame has to count.
+// What is where: the status and the device bytes of every level of every room, with the sums that decisions need kept
+// as they change, so that no frame has to count.
 #pragma once
 
 #include <cstdint>
@@ -22,8 +22,8 @@ enum class LevelStatus : std::uint8_t {
   kFailed,  // could not be loaded: not asked for while it is so, the next coarser level stands in
 };
 
-// Device bytes to set aside for a level of a room before it has been decoded: what the pack states, kept within what maps
-// of its size can take.
+// Device bytes to set aside for a level of a room before it has been decoded: what the pack states, kept within what
+// maps of its size can take.
 std::uint64_t planned_bytes(const RoomEntry& room, const LevelEntry& level);
 
 class LevelBook {
@@ -36,8 +36,8 @@ class LevelBook {
   LevelStatus status(LevelKey key) const { return entries_[index(key)].status; }
   std::uint64_t bytes(LevelKey key) const { return entries_[index(key)].bytes; }
   std::uint64_t bytes_disk(LevelKey key) const { return entries_[index(key)].bytes_disk; }
-  // Octaves of detail over a map of one cell a side, from the coarsest level 0 to the finest: of the measured errors where
-  // all levels of the room have one, else of the maps' sides. Rises with the level.
+  // Octaves of detail over a map of one cell a side, from the coarsest level 0 to the finest: of the measured errors
+  // where all levels of the room have one, else of the maps' sides. Rises with the level.
   double quality(LevelKey key) const { return entries_[index(key)].quality; }
   // Finest resident level; -1 = none.
   int shown(std::uint32_t room) const;
@@ -46,10 +46,12 @@ class LevelBook {
   // It has been decoded, and takes this much.
   void learn(LevelKey key, std::uint64_t bytes);
 
-  std::uint64_t held_bytes() const { return held_bytes_; }  // loading and resident
-  std::uint32_t loading() const { return loading_; }        // levels
+  std::uint64_t held_bytes() const { return held_bytes_; }      // loading and resident
+  std::uint32_t loading() const { return loading_; }            // levels
   std::uint64_t coarse_bytes() const { return coarse_bytes_; }  // of all rooms' coarsest levels, wherever they are
-  std::uint32_t coarse_open() const { return coarse_open_; }    // rooms whose coarsest level is neither resident nor failed
+  std::uint32_t coarse_open() const {
+    return coarse_open_;
+  }  // rooms whose coarsest level is neither resident nor failed
 
  private:
   struct Entry {

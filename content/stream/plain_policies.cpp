@@ -85,7 +85,11 @@ ResidencyDecision LruPolicy::decide(const Walker& walker, const LevelBook& book,
 
 OraclePolicy::OraclePolicy(const RoomGraph& graph, const SimulatedWalk& walk, const WalkViews& views,
                            const ResidencyOptions& options, double horizon_s)
-    : graph_(graph), walk_(walk), views_(views), options_(options), horizon_s_(horizon_s),
+    : graph_(graph),
+      walk_(walk),
+      views_(views),
+      options_(options),
+      horizon_s_(horizon_s),
       planner_(options.budget_bytes, options.most_loads) {}
 
 std::vector<LevelKey> OraclePolicy::want(const LevelBook& book) const {
@@ -121,8 +125,9 @@ std::vector<LevelKey> OraclePolicy::want(const LevelBook& book) const {
   }
   std::vector<RoomWorth> rooms;
   for (const auto& [room, need] : needs) rooms.push_back({room, need.weight / total, true, false});
-  std::sort(rooms.begin(), rooms.end(),
-            [](const RoomWorth& a, const RoomWorth& b) { return std::tuple(-a.weight, a.room) < std::tuple(-b.weight, b.room); });
+  std::sort(rooms.begin(), rooms.end(), [](const RoomWorth& a, const RoomWorth& b) {
+    return std::tuple(-a.weight, a.room) < std::tuple(-b.weight, b.room);
+  });
   const std::vector<std::uint32_t> level = choose_levels(rooms, book, purse.left_bytes(), 1.2);
   std::vector<std::tuple<double, double, LevelKey>> fine;
   for (std::size_t k = 0; k < rooms.size(); ++k) {

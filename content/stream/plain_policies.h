@@ -37,8 +37,8 @@ class LruPolicy final : public StreamingPolicy {
   std::int64_t room_ = -1;
 };
 
-// Knows the whole walk: weighs rooms by how much they will be seen within `horizon_s`, loads what is needed soonest first.
-// No best schedule (that is as hard as packing knapsacks over time): the best of several horizons is a good one.
+// Knows the whole walk: weighs rooms by how much they will be seen within `horizon_s`, loads what is needed soonest
+// first. No best schedule (that is as hard as packing knapsacks over time): the best of several horizons is a good one.
 class OraclePolicy final : public StreamingPolicy {
  public:
   // All outlive the policy, which is asked once for each step of the walk.

@@ -42,8 +42,9 @@ void RoomBoxes::build(std::uint32_t begin, std::uint32_t end) {
   const int axis = size_m.x >= size_m.y && size_m.x >= size_m.z ? 0 : size_m.y >= size_m.z ? 1 : 2;
   const auto middle = [&](std::uint32_t room) { return bounds_[room].lower_m[axis] + bounds_[room].upper_m[axis]; };
   const std::uint32_t half = begin + (end - begin) / 2;
-  std::nth_element(order_.begin() + begin, order_.begin() + half, order_.begin() + end,
-                   [&](std::uint32_t a, std::uint32_t b) { return std::tuple(middle(a), a) < std::tuple(middle(b), b); });
+  std::nth_element(
+      order_.begin() + begin, order_.begin() + half, order_.begin() + end,
+      [&](std::uint32_t a, std::uint32_t b) { return std::tuple(middle(a), a) < std::tuple(middle(b), b); });
   build(begin, half);
   nodes_[at].right = static_cast<std::uint32_t>(nodes_.size());
   build(half, end);
@@ -69,8 +70,7 @@ std::uint32_t RoomBoxes::find(const glm::dvec3& point_m) const {
       }
       continue;
     }
-    const bool left_first =
-        outside_m(nodes_[at + 1].box, point_m) <= outside_m(nodes_[node.right].box, point_m);
+    const bool left_first = outside_m(nodes_[at + 1].box, point_m) <= outside_m(nodes_[node.right].box, point_m);
     stack[depth++] = left_first ? node.right : at + 1;
     stack[depth++] = left_first ? at + 1 : node.right;
   }

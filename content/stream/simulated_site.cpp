@@ -39,7 +39,8 @@ Manifest site_of_rooms(const Manifest& pack, std::uint32_t rooms) {
   // A door's width along `along`, in the middle of the wall between two rooms.
   const auto door = [&](std::uint32_t a, std::uint32_t b, glm::dvec3 middle_m, glm::dvec3 along) {
     const glm::dvec3 half = along * (0.5 * kDoorWidth_m), up(0.0, kDoorHeight_m, 0.0);
-    site.portals.push_back({static_cast<int>(a), static_cast<int>(b),
+    site.portals.push_back({static_cast<int>(a),
+                            static_cast<int>(b),
                             {middle_m - half, middle_m + half, middle_m + half + up, middle_m - half + up}});
   };
   for (std::uint32_t k = 0; k < rooms; ++k) {

@@ -36,7 +36,7 @@ class SimulatedSource {
  private:
   struct Load {
     LevelKey key;
-    double wait_s = 0.0;         // until the first byte
+    double wait_s = 0.0;  // until the first byte
     double bytes_left = 0.0;
     double decode_left_s = 0.0;
     bool fails = false;

@@ -26,7 +26,10 @@ class Dice {
 class Walk {
  public:
   Walk(const Manifest& manifest, WalkKind kind, std::uint64_t seed, double duration_s, double step_s)
-      : manifest_(manifest), kind_(kind), dice_(seed), most_(static_cast<std::size_t>(duration_s / step_s)),
+      : manifest_(manifest),
+        kind_(kind),
+        dice_(seed),
+        most_(static_cast<std::size_t>(duration_s / step_s)),
         speed_m_s_(dice_.between(1.0, 1.8)) {
     walk_.kind = name_of(kind);
     walk_.step_s = step_s;
@@ -157,10 +160,14 @@ class Walk {
 
 const char* name_of(WalkKind kind) {
   switch (kind) {
-    case WalkKind::kWander: return "wander";
-    case WalkKind::kTurnBack: return "turn back";
-    case WalkKind::kDoorway: return "doorway";
-    case WalkKind::kTeleport: return "teleport";
+    case WalkKind::kWander:
+      return "wander";
+    case WalkKind::kTurnBack:
+      return "turn back";
+    case WalkKind::kDoorway:
+      return "doorway";
+    case WalkKind::kTeleport:
+      return "teleport";
   }
   return "";
 }

@@ -36,7 +36,8 @@ inline constexpr WalkKind kAllWalkKinds[] = {WalkKind::kWander, WalkKind::kTurnB
 const char* name_of(WalkKind kind);
 
 // A walk along the middles of rooms and portals, at 1.0 to 1.8 m/s. The same seed gives the same walk.
-SimulatedWalk random_walk(const Manifest& manifest, WalkKind kind, std::uint64_t seed, double duration_s, double step_s);
+SimulatedWalk random_walk(const Manifest& manifest, WalkKind kind, std::uint64_t seed, double duration_s,
+                          double step_s);
 
 // What each step sees: rooms by their share of all directions, the walker's own first.
 class WalkViews {

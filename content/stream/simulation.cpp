@@ -164,8 +164,15 @@ class Simulation {
     result_.coarse_run_max = std::max(result_.coarse_run_max, coarse_run_);
     if (options_.sample_s > 0.0 && t_s_ >= next_sample_s_) {
       next_sample_s_ = t_s_ + options_.sample_s;
-      SimulationSample sample{t_s_, static_cast<std::int32_t>(room), shown, wanted, 0,
-                              book_.held_bytes() + retired_bytes_, source_.bytes_moved(), missing, source_.depth()};
+      SimulationSample sample{t_s_,
+                              static_cast<std::int32_t>(room),
+                              shown,
+                              wanted,
+                              0,
+                              book_.held_bytes() + retired_bytes_,
+                              source_.bytes_moved(),
+                              missing,
+                              source_.depth()};
       for (const LevelKey& key : decision.wanted) sample.wanted_bytes += book_.bytes(key);
       result_.samples.push_back(sample);
     }

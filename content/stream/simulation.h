@@ -1,5 +1,5 @@
-// Streaming without a device: a policy, a source of numbers and a walk, step by step, faster than real time; and what came
-// of it.
+// Streaming without a device: a policy, a source of numbers and a walk, step by step, faster than real time; and what
+// came of it.
 #pragma once
 
 #include <cstdint>
@@ -30,7 +30,7 @@ struct SimulationSample {
   std::uint64_t held_bytes = 0;          // resident, loading and not yet freed
   double bytes_moved = 0.0;              // from the source since the start
   double missing_octaves = 0.0;
-  std::size_t depth = 0;                 // loads under way
+  std::size_t depth = 0;  // loads under way
 };
 
 struct SimulationResult {

@@ -1,4 +1,5 @@
-// What a policy of streaming is asked and answers: numbers in, decisions out. Knows neither files nor threads nor a GPU.
+// What a policy of streaming is asked and answers: numbers in, decisions out. Knows neither files nor threads nor a
+// GPU.
 #pragma once
 
 #include <cstdint>
@@ -16,8 +17,8 @@ inline constexpr std::uint64_t kUnlimitedBudget = ~std::uint64_t{0};
 
 struct Walker {
   glm::dvec3 head_m{0.0};
-  glm::dvec3 velocity_m_s{0.0};  // smoothed over a few tenths of a second
-  glm::dvec3 look{0.0};          // direction of the view; 0 = all around
+  glm::dvec3 velocity_m_s{0.0};                    // smoothed over a few tenths of a second
+  glm::dvec3 look{0.0};                            // direction of the view; 0 = all around
   std::optional<glm::dvec3> aim_m = std::nullopt;  // where a teleport may go next
 };
 
@@ -34,13 +35,14 @@ struct ResidencyDecision {
 class StreamingPolicy {
  public:
   virtual ~StreamingPolicy() = default;
-  // Once a frame. `retired_bytes` are evicted but not yet freed. The same calls in the same order give the same decisions.
+  // Once a frame. `retired_bytes` are evicted but not yet freed. The same calls in the same order give the same
+  // decisions.
   virtual ResidencyDecision decide(const Walker& walker, const LevelBook& book, std::uint64_t retired_bytes) = 0;
 };
 
-// Carries out what is wanted within the budget, for every policy alike: what to load now, and what goes for it. Resident,
-// loading and not yet freed bytes together never exceed the budget. What is not wanted goes only to make space, what was
-// wanted longest ago first. Costs as much as what is wanted, however much is resident.
+// Carries out what is wanted within the budget, for every policy alike: what to load now, and what goes for it.
+// Resident, loading and not yet freed bytes together never exceed the budget. What is not wanted goes only to make
+// space, what was wanted longest ago first. Costs as much as what is wanted, however much is resident.
 class ResidencyPlanner {
  public:
   ResidencyPlanner(std::uint64_t budget_bytes, std::uint32_t most_loads)

@@ -54,8 +54,8 @@ void run(const std::filesystem::path& folder, int eyes, int side_px, double fov_
   const auto& levels = foveation_levels();
   std::vector<std::unique_ptr<StillDrawer>> drawers;
   for (const FoveationLevel& level : levels) {
-    drawers.push_back(std::make_unique<StillDrawer>(pack, device, VkExtent2D{side, side}, 1, 1, progress, TracerChoice{},
-                                                    nullptr, level.foveation));
+    drawers.push_back(std::make_unique<StillDrawer>(pack, device, VkExtent2D{side, side}, 1, 1, progress,
+                                                    TracerChoice{}, nullptr, level.foveation));
   }
   FrameSettings settings;
   settings.trace = default_dials(pack.manifest().radiance_scale);
@@ -90,7 +90,8 @@ void run(const std::filesystem::path& folder, int eyes, int side_px, double fov_
       std::vector<bool> inside;
       for (int y = 0; y < side_px; ++y) {
         for (int x = 0; x < side_px; ++x) {
-          inside.push_back(view_ray_cosine(view, {x, y}, {side_px, side_px}) >= std::cos(levels[k].foveation->full_rad));
+          inside.push_back(view_ray_cosine(view, {x, y}, {side_px, side_px}) >=
+                           std::cos(levels[k].foveation->full_rad));
         }
       }
       result.flip_inside += mean_where(map, inside, true) / eyes;

@@ -1,8 +1,8 @@
 // Error promised against error measured, beside uniform grids: by hand, not run by ctest.
 //   promise_table [--plans-only] SCENE [TARGET...]
-// For each target the bake is planned and measured on views that the planner has not seen. Then grids of many numbers of
-// probes and sizes are measured on the same views: the smallest of no greater error, and the best of no more bytes. Prints
-// a line a target, and the grids' frontier.
+// For each target the bake is planned and measured on views that the planner has not seen. Then grids of many numbers
+// of probes and sizes are measured on the same views: the smallest of no greater error, and the best of no more bytes.
+// Prints a line a target, and the grids' frontier.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -45,8 +45,12 @@ glm::uvec2 address_of(const void* memory) {
 class Table {
  public:
   explicit Table(const fs::path& file, fs::path folder)
-      : scene_(load_scene(file)), rays_(scene_), space_(find_space(scene_, rays_, {}, progress_)),
-        heads_(scene_, rays_, space_), light_(scene_, rays_, light_options(), progress_), folder_(std::move(folder)) {
+      : scene_(load_scene(file)),
+        rays_(scene_),
+        space_(find_space(scene_, rays_, {}, progress_)),
+        heads_(scene_, rays_, space_),
+        light_(scene_, rays_, light_options(), progress_),
+        folder_(std::move(folder)) {
     std::vector<Pose> tour = space_.tour;
     if (tour.empty()) tour.push_back(space_.start);
     exposure_ = choose_exposure(light_, tour);
@@ -73,7 +77,8 @@ class Table {
       least = std::min(least, std::size_t(std::min(room.size.geometry, room.size.radiance)));
       most = std::max(most, std::size_t(std::max(room.size.geometry, room.size.radiance)));
     }
-    measured.what = fmt::format("{} probes, {}..{}, {}", records.size(), least, most, plan.kept ? "said kept" : "said NOT kept");
+    measured.what =
+        fmt::format("{} probes, {}..{}, {}", records.size(), least, most, plan.kept ? "said kept" : "said NOT kept");
     measured.error = measure(plan.grid, records);
     measured.seconds = plan.seconds;
     state.remove();
@@ -99,7 +104,8 @@ class Table {
         for (const bool light : {false, true}) {
           const double start_s = store.baking_seconds();
           for (std::uint32_t k = 0; k < placement.sites.size(); ++k) {
-            light ? maps.radiance(k, placement.sites[k].position_m, n) : maps.geometry(k, placement.sites[k].position_m, n);
+            light ? maps.radiance(k, placement.sites[k].position_m, n)
+                  : maps.geometry(k, placement.sites[k].position_m, n);
           }
           (light ? radiance_s : geometry_s)[n] = store.baking_seconds() - start_s;
         }
@@ -175,12 +181,15 @@ void run(const fs::path& file, const std::vector<double>& targets, bool with_gri
     const Measured* equal_error = nullptr;
     const Measured* equal_bytes = nullptr;
     for (const Measured& grid : grids) {
-      if (grid.error.worst() <= plan.error.worst() && (!equal_error || grid.bytes < equal_error->bytes)) equal_error = &grid;
-      if (grid.bytes <= plan.bytes && (!equal_bytes || grid.error.worst() < equal_bytes->error.worst())) equal_bytes = &grid;
+      if (grid.error.worst() <= plan.error.worst() && (!equal_error || grid.bytes < equal_error->bytes))
+        equal_error = &grid;
+      if (grid.bytes <= plan.bytes && (!equal_bytes || grid.error.worst() < equal_bytes->error.worst()))
+        equal_bytes = &grid;
     }
     fmt::print("{} {:.3g}: grid of equal error: {}; of equal bytes: {}\n", file.stem().string(), targets[k],
-               equal_error ? fmt::format("{}: bytes x {:.2f}, its bake alone x {:.2f} of the plan's time", text_of(*equal_error),
-                                         double(equal_error->bytes) / double(plan.bytes), equal_error->seconds / plan.seconds)
+               equal_error ? fmt::format("{}: bytes x {:.2f}, its bake alone x {:.2f} of the plan's time",
+                                         text_of(*equal_error), double(equal_error->bytes) / double(plan.bytes),
+                                         equal_error->seconds / plan.seconds)
                            : std::string("none of those tried"),
                equal_bytes ? fmt::format("{}: error x {:.2f}", text_of(*equal_bytes),
                                          equal_bytes->error.worst() / plan.error.worst())

@@ -103,7 +103,8 @@ TEST_F(HttpSourceTest, TakesEverythingAgainFromAServerWithoutRanges) {
 
 TEST_F(HttpSourceTest, AsksAgainAfterServerErrorsButNotForWhatIsNotThere) {
   int k = 0;
-  test::HttpServer server([&](const HttpRequest& r) { return ++k <= 3 ? HttpReply{.status = 503, .body = "busy"} : sound(r); });
+  test::HttpServer server(
+      [&](const HttpRequest& r) { return ++k <= 3 ? HttpReply{.status = 503, .body = "busy"} : sound(r); });
   EXPECT_EQ(source(server).read(level, kNotCancelled), expected);
   EXPECT_EQ(k, 4);
   LevelEntry missing = level;
@@ -115,7 +116,9 @@ TEST_F(HttpSourceTest, AsksAgainAfterServerErrorsButNotForWhatIsNotThere) {
 
 TEST_F(HttpSourceTest, NeverTakesWrongBytes) {
   std::string body = text_of(folder.path() / "pack/chunks" / level.chunk);
-  test::HttpServer server([&](const HttpRequest& r) { return r.range_from == 0 ? HttpReply{.body = body} : HttpReply{.status = 416, .body = ""}; });
+  test::HttpServer server([&](const HttpRequest& r) {
+    return r.range_from == 0 ? HttpReply{.body = body} : HttpReply{.status = 416, .body = ""};
+  });
   body[body.size() / 2] ^= 1;
   EXPECT_THAT(reason(source(server), level), HasSubstr("do not match"));
   body = body.substr(0, body.size() - 3);
@@ -162,7 +165,8 @@ TEST_F(HttpSourceTest, HearsACancellationWithinATransfer) {
 
 TEST_F(HttpSourceTest, AWalkersRoomsComeInThoughRequestsFail) {
   std::atomic<int> k{0};
-  test::HttpServer server([&](const HttpRequest& r) { return ++k % 3 == 0 ? HttpReply{.status = 500, .body = ""} : sound(r); });
+  test::HttpServer server(
+      [&](const HttpRequest& r) { return ++k % 3 == 0 ? HttpReply{.status = 500, .body = ""} : sound(r); });
   const HttpSource from = source(server);
   std::atomic<int> delivered{0};
   RoomStreamer streamer(manifest, from, [&](LoadedLevel&&) { ++delivered; }, [](LevelKey) {});

@@ -32,8 +32,8 @@ Manifest model_pack() {
 
 SimulationOptions options_for(const Manifest& site, double share_of_site, double bytes_per_s, double latency_s) {
   SimulationOptions options;
-  options.residency.budget_bytes =
-      std::max(minimum_budget(site), static_cast<std::uint64_t>(share_of_site * static_cast<double>(site.bytes_device())));
+  options.residency.budget_bytes = std::max(
+      minimum_budget(site), static_cast<std::uint64_t>(share_of_site * static_cast<double>(site.bytes_device())));
   options.source.bytes_per_s = bytes_per_s;
   options.source.latency_s = latency_s;
   return options;
@@ -119,8 +119,10 @@ TEST(Simulation, ASlowerSourceTakesLongerAndAFailingOneIsAskedAgain) {
   const RoomGraph graph(site.rooms, site.portals);
   const SimulatedWalk walk = random_walk(site, WalkKind::kTeleport, 5, 40.0, 1.0 / 30.0);
   const WalkViews views(graph, walk);
-  const SimulationResult quick = simulate_policy("probewalk", site, graph, walk, views, options_for(site, 0.2, 500e6, 0.0));
-  const SimulationResult slow = simulate_policy("probewalk", site, graph, walk, views, options_for(site, 0.2, 1e6, 0.3));
+  const SimulationResult quick =
+      simulate_policy("probewalk", site, graph, walk, views, options_for(site, 0.2, 500e6, 0.0));
+  const SimulationResult slow =
+      simulate_policy("probewalk", site, graph, walk, views, options_for(site, 0.2, 1e6, 0.3));
   EXPECT_LT(quick.missing_octaves, slow.missing_octaves);
   EXPECT_LT(quick.coarse_steps, slow.coarse_steps);
   SimulationOptions failing = options_for(site, 0.2, 50e6, 0.02);

@@ -32,11 +32,12 @@ class FoveationTest : public test::GpuTest {
   FoveationTest() { store.upload(room.upload()); }
 
   Drawn draw(const std::optional<Foveation>& foveation, std::uint32_t samples = 1) {
-    FrameRenderer renderer(device, store,
-                           {.tracer = {.extent_px = kExtent, .views = 2, .aov = true, .samples = samples, .foveation = foveation},
-                            .target_format = kFormat});
-    const Image image(device, {kFormat, kExtent, 2,
-                               VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT});
+    FrameRenderer renderer(
+        device, store,
+        {.tracer = {.extent_px = kExtent, .views = 2, .aov = true, .samples = samples, .foveation = foveation},
+         .target_format = kFormat});
+    const Image image(device,
+                      {kFormat, kExtent, 2, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT});
     FrameTarget target;
     target.image = image.handle();
     target.format = kFormat;
@@ -121,8 +122,8 @@ TEST_F(FoveationTest, TheFoveaIsAsWithoutAndOutsideARayStandsForABlock) {
 
 TEST_F(FoveationTest, BetweenRaysIsFilledWithWhatTheyShow) {
   const Drawn plain = draw(std::nullopt), foveated = draw(kNarrow);
-  // Most of the room is smooth: filled in it looks like itself, but for edges and the blocks around them. Left unfilled,
-  // half of the picture would be off.
+  // Most of the room is smooth: filled in it looks like itself, but for edges and the blocks around them. Left
+  // unfilled, half of the picture would be off.
   std::size_t off = 0, all = 0;
   for (std::size_t view = 0; view < 2; ++view) {
     for (std::size_t at = 0; at < plain.radiance[view].rgb.size(); ++at) {

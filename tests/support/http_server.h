@@ -24,9 +24,9 @@ struct HttpRequest {
 
 struct HttpReply {
   int status = 200;
-  std::string body;                        // from range_from on where status is 206
+  std::string body;                              // from range_from on where status is 206
   std::size_t breaks_after = std::string::npos;  // bytes of the body, then the connection is cut
-  double stalls_s = 0.0;                   // before the body
+  double stalls_s = 0.0;                         // before the body
 };
 
 class HttpServer {
@@ -80,10 +80,12 @@ class HttpServer {
     if (to != std::string::npos) {
       ++requests_;
       HttpRequest request{text.substr(from + 1, to - from - 1), 0};
-      if (const std::size_t at = text.find("bytes="); at != std::string::npos) request.range_from = std::stoul(text.substr(at + 6));
+      if (const std::size_t at = text.find("bytes="); at != std::string::npos)
+        request.range_from = std::stoul(text.substr(at + 6));
       HttpReply reply = handler_(request);
-      std::string head = "HTTP/1.1 " + std::to_string(reply.status) + " Test\r\nConnection: close\r\nContent-Length: " +
-                         std::to_string(reply.body.size()) + "\r\n\r\n";
+      std::string head = "HTTP/1.1 " + std::to_string(reply.status) +
+                         " Test\r\nConnection: close\r\nContent-Length: " + std::to_string(reply.body.size()) +
+                         "\r\n\r\n";
       send_all(connection, head);
       for (int k = 0; k < static_cast<int>(reply.stalls_s * 100.0) && !stop_; ++k) {
         std::this_thread::sleep_for(std::chrono::milliseconds(10));

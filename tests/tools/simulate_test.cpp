@@ -28,9 +28,11 @@ RunResult simulate(const std::vector<std::string>& more) {
 
 TEST(Simulate, ComparesPoliciesOverWalksOfASite) {
   const fs::path out = pack().parent_path() / "page";
-  const RunResult run = simulate({"--rooms", "60", "--walks", "4", "--seconds", "10", "--rate", "20", "--source", "20Mbit/s",
-                                  "--latency", "50ms", "--failures", "1%", "--device-budget", "16", "--policy",
-                                  "probewalk,oracle", "-o", out.string(), "--json"});
+  const RunResult run =
+      simulate({"--rooms",    "60",         "--walks",         "4",        "--seconds", "10",
+                "--rate",     "20",         "--source",        "20Mbit/s", "--latency", "50ms",
+                "--failures", "1%",         "--device-budget", "16",       "--policy",  "probewalk,oracle",
+                "-o",         out.string(), "--json"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   const auto json = nlohmann::json::parse(run.out);
   EXPECT_EQ(json["rooms"], 60);
@@ -53,11 +55,14 @@ TEST(Simulate, ComparesPoliciesOverWalksOfASite) {
 
 TEST(Simulate, FollowsAPathAndGivesTheSameNumbersAgain) {
   const fs::path path = pack().parent_path() / "path.jsonl";
-  std::ofstream(path) << R"({"t_s": 0, "position_m": [0, 1.6, 0], "orientation_xyzw": [0, 0, 0, 1]})" "\n"
-                      << R"({"t_s": 2, "position_m": [0.5, 1.6, 0], "orientation_xyzw": [0, 0, 0, 1]})" "\n";
+  std::ofstream(path) << R"({"t_s": 0, "position_m": [0, 1.6, 0], "orientation_xyzw": [0, 0, 0, 1]})"
+                         "\n"
+                      << R"({"t_s": 2, "position_m": [0.5, 1.6, 0], "orientation_xyzw": [0, 0, 0, 1]})"
+                         "\n";
   const RunResult first = simulate({"--path", path.string(), "--rate", "50", "--json"});
   ASSERT_EQ(first.exit_code, 0) << first.err;
-  auto a = nlohmann::json::parse(first.out), b = nlohmann::json::parse(simulate({"--path", path.string(), "--rate", "50", "--json"}).out);
+  auto a = nlohmann::json::parse(first.out),
+       b = nlohmann::json::parse(simulate({"--path", path.string(), "--rate", "50", "--json"}).out);
   EXPECT_EQ(a["policies"][0]["steps"], 101);
   for (auto* json : {&a, &b}) {
     for (const char* timed : {"decide_p50_ns", "decide_p99_ns"}) (*json)["policies"][0].erase(timed);

@@ -51,7 +51,8 @@ std::vector<SimulatedWalk> chosen_walks(const SimulateArguments& arguments, cons
   if (arguments.walks == 0 && !manifest.tour.empty()) return {walk_along(path_of_tour(manifest.tour), step_s, "tour")};
   std::vector<SimulatedWalk> walks;
   for (std::uint32_t k = 0; k < std::max(arguments.walks, 1u); ++k) {
-    walks.push_back(random_walk(manifest, kAllWalkKinds[k % std::size(kAllWalkKinds)], k + 1, arguments.seconds, step_s));
+    walks.push_back(
+        random_walk(manifest, kAllWalkKinds[k % std::size(kAllWalkKinds)], k + 1, arguments.seconds, step_s));
   }
   return walks;
 }
@@ -62,7 +63,8 @@ void run_simulate(const SimulateArguments& arguments, const CommonOptions& commo
   if (arguments.rooms > 0) {
     bool has_levels = false;
     for (const RoomEntry& room : manifest.rooms) has_levels = has_levels || !room.levels.empty();
-    if (!has_levels) throw BadInput(arguments.pack + ": no room has anything to stream; --rooms has nothing to build of");
+    if (!has_levels)
+      throw BadInput(arguments.pack + ": no room has anything to stream; --rooms has nothing to build of");
     manifest = site_of_rooms(manifest, arguments.rooms);
   }
   SimulationOptions options;
@@ -102,13 +104,16 @@ void run_simulate(const SimulateArguments& arguments, const CommonOptions& commo
     std::error_code error;
     std::filesystem::create_directories(directory, error);
     if (error) {
-      throw BadInput(fmt::format("cannot make the directory {}: {}; choose another", directory.string(), error.message()));
+      throw BadInput(
+          fmt::format("cannot make the directory {}: {}; choose another", directory.string(), error.message()));
     }
-    const simulation::PageFacts facts{
-        title,
-        {{"command", own_command_line()}, {"build", read_build_info()}, {"walks", std::to_string(walks.size())},
-         {"first walk", walks.front().kind}, {"beside the page", "results.json"}},
-        options.residency.budget_bytes};
+    const simulation::PageFacts facts{title,
+                                      {{"command", own_command_line()},
+                                       {"build", read_build_info()},
+                                       {"walks", std::to_string(walks.size())},
+                                       {"first walk", walks.front().kind},
+                                       {"beside the page", "results.json"}},
+                                      options.residency.budget_bytes};
     const std::string page = simulation::simulation_page(facts, trial);
     write_file_whole(directory / "results.json", std::as_bytes(std::span(text)));
     write_file_whole(directory / "index.html", std::as_bytes(std::span(page)));
@@ -131,37 +136,58 @@ void run_simulate(const SimulateArguments& arguments, const CommonOptions& commo
 }  // namespace
 
 void add_simulate_command(CLI::App& app, CommonOptions& common) {
-  CLI::App* command = app.add_subcommand("simulate", "Stream a pack without a device: policy, source and walk as numbers");
+  CLI::App* command =
+      app.add_subcommand("simulate", "Stream a pack without a device: policy, source and walk as numbers");
   auto arguments = std::make_shared<SimulateArguments>();
-  command->add_option("PACK", arguments->pack, "The pack (a folder NAME.probes); only its list of rooms is read")->required();
-  command->add_option("--source", arguments->source, "What the source delivers in all: 50MB/s, 20Mbit/s")->capture_default_str();
-  command->add_option("--latency", arguments->latency, "From a request to its first byte: 20ms, 0.3s")->capture_default_str();
+  command->add_option("PACK", arguments->pack, "The pack (a folder NAME.probes); only its list of rooms is read")
+      ->required();
+  command->add_option("--source", arguments->source, "What the source delivers in all: 50MB/s, 20Mbit/s")
+      ->capture_default_str();
+  command->add_option("--latency", arguments->latency, "From a request to its first byte: 20ms, 0.3s")
+      ->capture_default_str();
   command->add_option("--failures", arguments->failures, "Requests that fail: 1%")->capture_default_str();
   command->add_option("--device-budget", arguments->budget_mib, "Device memory for probes, MiB (default: unlimited)")
       ->check(CLI::Range(1ull, 1ull << 24));
   command->add_option("--decoders", arguments->decoders, "Threads that decode what has arrived")
-      ->check(CLI::Range(1u, 64u))->capture_default_str();
-  command->add_option("--rooms", arguments->rooms, "Instead of the pack's building one of so many rooms, made of its rooms' levels")
+      ->check(CLI::Range(1u, 64u))
+      ->capture_default_str();
+  command
+      ->add_option("--rooms", arguments->rooms,
+                   "Instead of the pack's building one of so many rooms, made of its rooms' levels")
       ->check(CLI::Range(1u, 1000000u));
-  CLI::Option* path = command->add_option("--path", arguments->path, "Walk this path: JSON lines, as walk --record writes them");
-  command->add_option("--walks", arguments->walks,
-                      "So many random walks instead: wandering, turning back, in doorways and teleporting in turn (default: "
-                      "the pack's tour)")
-      ->check(CLI::Range(1u, 100000u))->excludes(path);
+  CLI::Option* path =
+      command->add_option("--path", arguments->path, "Walk this path: JSON lines, as walk --record writes them");
+  command
+      ->add_option(
+          "--walks", arguments->walks,
+          "So many random walks instead: wandering, turning back, in doorways and teleporting in turn (default: "
+          "the pack's tour)")
+      ->check(CLI::Range(1u, 100000u))
+      ->excludes(path);
   command->add_option("--seconds", arguments->seconds, "Of each random walk")
-      ->check(CLI::Range(1.0, 86400.0))->capture_default_str();
-  command->add_option("--rate", arguments->rate_hz, "Frames a second")->check(CLI::Range(1.0, 1000.0))->capture_default_str();
+      ->check(CLI::Range(1.0, 86400.0))
+      ->capture_default_str();
+  command->add_option("--rate", arguments->rate_hz, "Frames a second")
+      ->check(CLI::Range(1.0, 1000.0))
+      ->capture_default_str();
   const std::vector<std::string> names(std::begin(kPolicies), std::end(kPolicies));
-  command->add_option("--policy", arguments->policies,
-                      "Comma-separated, of probewalk (the product's), neighbours and lru (plain ones), oracle (knows the walk)")
-      ->delimiter(',')->check(CLI::IsMember(names))->capture_default_str();
-  command->add_option("-o,--output", arguments->output, "Also write index.html (plots) and results.json into this directory");
+  command
+      ->add_option(
+          "--policy", arguments->policies,
+          "Comma-separated, of probewalk (the product's), neighbours and lru (plain ones), oracle (knows the walk)")
+      ->delimiter(',')
+      ->check(CLI::IsMember(names))
+      ->capture_default_str();
+  command->add_option("-o,--output", arguments->output,
+                      "Also write index.html (plots) and results.json into this directory");
   add_common_options(*command, common);
   command->footer(
-      "Plans a site: is this budget enough, is that line fast enough, and what would waiting look like? Nothing is drawn or\n"
+      "Plans a site: is this budget enough, is that line fast enough, and what would waiting look like? Nothing is "
+      "drawn or\n"
       "loaded, so minutes of walking take seconds, and a site of thousands of rooms needs none of its files.\n\n"
       "  probewalk simulate house.probes --source 50MB/s --latency 20ms --device-budget 64\n"
-      "  probewalk simulate house.probes --rooms 200 --walks 20 --device-budget 256 --policy probewalk,lru,oracle -o sim\n"
+      "  probewalk simulate house.probes --rooms 200 --walks 20 --device-budget 256 --policy probewalk,lru,oracle -o "
+      "sim\n"
       "  probewalk simulate house.probes --path walked.jsonl --source 20Mbit/s --failures 1%");
   command->callback([arguments, &common] { run_simulate(*arguments, common); });
 }

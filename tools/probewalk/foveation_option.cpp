@@ -21,9 +21,11 @@ void add_foveation_option(CLI::App& command, std::string& name) {
                           degrees(level.foveation->half_rad));
   }
   command
-      .add_option("--foveation", name,
-                  "Fewer rays towards the rim: beyond the first angle from the view's axis one for 2 x 2 pixels, beyond "
-                  "the second one for 4 x 4, in degrees" + angles)
+      .add_option(
+          "--foveation", name,
+          "Fewer rays towards the rim: beyond the first angle from the view's axis one for 2 x 2 pixels, beyond "
+          "the second one for 4 x 4, in degrees" +
+              angles)
       ->check(CLI::IsMember(names))
       ->capture_default_str();
 }

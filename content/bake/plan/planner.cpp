@@ -76,7 +76,8 @@ class Planner {
     for (int attempt = 0;; ++attempt) {
       refine();
       if (target_.error > 0.0) coarsen();
-      const WalkerViews views = sample(2 + std::uint32_t(attempt), counts_for(rooms_.size(), target_.effort, 24000, 2400, 500));
+      const WalkerViews views =
+          sample(2 + std::uint32_t(attempt), counts_for(rooms_.size(), target_.effort, 24000, 2400, 500));
       arrange();
       held_back = measure(views);
       plan.held_back = mean_error(held_back, views.room_share);

@@ -26,7 +26,7 @@ struct PlanTarget {
   std::size_t most_probes = 200;
   int most_geometry = 1024;  // cells a side
   int most_radiance = 1024;  // texels a side
-  double effort = 1.0;             // more views are a surer promise and take longer
+  double effort = 1.0;       // more views are a surer promise and take longer
   int coarse_side = 128;     // of the level that finer ones come with
   bool asked() const { return error > 0.0 || budget_bytes > 0; }
 };

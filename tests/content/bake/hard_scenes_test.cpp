@@ -116,8 +116,8 @@ TEST(HardScenes, OneTriangleThatNobodyCanStandOn) {
 TEST(HardScenes, TrianglesWithoutAreaOrNumbers) {
   std::vector<float> corners = floor_corners();
   const float nan = std::numeric_limits<float>::quiet_NaN(), infinity = std::numeric_limits<float>::infinity();
-  for (int k = 0; k < 3; ++k) corners.insert(corners.end(), {1.0f, 1.0f, 1.0f});          // a point
-  corners.insert(corners.end(), {1, 1, 1, 2, 1, 1, 3, 1, 1});                             // a line
+  for (int k = 0; k < 3; ++k) corners.insert(corners.end(), {1.0f, 1.0f, 1.0f});  // a point
+  corners.insert(corners.end(), {1, 1, 1, 2, 1, 1, 3, 1, 1});                     // a line
   corners.insert(corners.end(), {nan, 1, 1, 2, 1, 1, 3, 2, 1});
   corners.insert(corners.end(), {infinity, 1, 1, 2, 1, 1, 3, 2, 1});
   const Baked baked = bake_scene(triangles(corners).write(), 0.2);
@@ -135,7 +135,8 @@ TEST(HardScenes, ARoomOpenToNothing) {
 TEST(HardScenes, AMirrorHall) {
   std::vector<float> corners = floor_corners();
   for (const float y : {0.0f, 2.6f}) add_quad(corners, {0, y, 0}, {0, y, 4}, {4, y, 4}, {4, y, 0});
-  for (const float x : {0.0f, 1.3f, 2.7f, 4.0f}) add_quad(corners, {x, 0, 0.7f}, {x, 2.6f, 0.7f}, {x, 2.6f, 4}, {x, 0, 4});
+  for (const float x : {0.0f, 1.3f, 2.7f, 4.0f})
+    add_quad(corners, {x, 0, 0.7f}, {x, 2.6f, 0.7f}, {x, 2.6f, 4}, {x, 0, 4});
   GltfScene scene = triangles(corners);
   scene.set_material({{"pbrMetallicRoughness", {{"metallicFactor", 1.0}, {"roughnessFactor", 0.0}}}});
   expect_pack_or_statement(bake_scene(scene.write(), 0.2));
@@ -157,7 +158,8 @@ TEST_P(HardProceduralScenes, EndInAGoodPackOrAStatement) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, HardProceduralScenes,
-                         testing::Values("boxed-lattice", "corridor", "star-room", "lattice", "closed-cells", "triangles-1e5"),
+                         testing::Values("boxed-lattice", "corridor", "star-room", "lattice", "closed-cells",
+                                         "triangles-1e5"),
                          [](const auto& scene) {
                            std::string name = scene.param;
                            std::erase(name, '-');

@@ -15,7 +15,9 @@ namespace {
 constexpr std::string_view kColours[] = {bench::kVermilion, bench::kBlue, bench::kGreen, bench::kPurple};
 constexpr double kMiB = 1 << 20;
 
-std::string_view colour_of(std::size_t k) { return kColours[k % std::size(kColours)]; }
+std::string_view colour_of(std::size_t k) {
+  return kColours[k % std::size(kColours)];
+}
 
 bench::Curve curve_of(const std::string& name, const std::vector<SimulationSample>& samples, std::string_view colour,
                       double (*value)(const SimulationSample&)) {
@@ -38,8 +40,8 @@ std::string plots(const PageFacts& facts, const Trial& trial) {
   double end_s = 0.0;
   for (std::size_t k = 0; k < trial.policies.size(); ++k) {
     const PolicyTrial& p = trial.policies[k];
-    held.curves.push_back(
-        curve_of(p.policy, p.samples, colour_of(k), [](const SimulationSample& s) { return double(s.held_bytes) / kMiB; }));
+    held.curves.push_back(curve_of(p.policy, p.samples, colour_of(k),
+                                   [](const SimulationSample& s) { return double(s.held_bytes) / kMiB; }));
     missing.curves.push_back(
         curve_of(p.policy, p.samples, colour_of(k), [](const SimulationSample& s) { return s.missing_octaves; }));
     moved.curves.push_back(
@@ -79,16 +81,19 @@ std::string simulation_page(const PageFacts& facts, const Trial& trial) {
       "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>Streaming simulated</title>\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<style>";
   html += kReportStyle;
-  html += "</style></head>\n<body><main>\n<h1>Streaming simulated</h1>\n<p class=\"soft\">" + html_escaped(facts.title) +
-          "</p>\n";
+  html += "</style></head>\n<body><main>\n<h1>Streaming simulated</h1>\n<p class=\"soft\">" +
+          html_escaped(facts.title) + "</p>\n";
   html += fmt::format(
-      "<p>{:.0f} s of walking a policy. “Lacks” is the detail that the view misses against every room's finest level, in "
+      "<p>{:.0f} s of walking a policy. “Lacks” is the detail that the view misses against every room's finest level, "
+      "in "
       "octaves, averaged over directions and time; no policy could go below {:.3f} with this budget, whatever the "
       "source. A frame is coarse when the walker's room shows less than the policy wants there.</p>\n",
       trial.simulated_s, trial.bound_octaves);
-  html += policies(trial) + "<h2>The first walk</h2>\n" + plots(facts, trial) + "<h2>What was simulated</h2>\n<table>\n";
+  html +=
+      policies(trial) + "<h2>The first walk</h2>\n" + plots(facts, trial) + "<h2>What was simulated</h2>\n<table>\n";
   for (const auto& [name, value] : facts.facts) {
-    html += "<tr><td class=\"soft\">" + html_escaped(name) + "</td><td class=\"words\">" + html_escaped(value) + "</td></tr>\n";
+    html += "<tr><td class=\"soft\">" + html_escaped(name) + "</td><td class=\"words\">" + html_escaped(value) +
+            "</td></tr>\n";
   }
   return html + "</table>\n</main></body></html>\n";
 }

@@ -117,14 +117,16 @@ nlohmann::ordered_json to_json(const Trial& trial) {
 
 std::vector<std::string> table(const Trial& trial) {
   std::vector<std::string> lines;
-  lines.push_back(fmt::format("{:<11} {:>8} {:>7} {:>8} {:>9} {:>7} {:>10} {:>10} {:>9} {:>9} {:>9}", "policy", "missing",
-                              "regret", "coarse", "longest", "holes", "need p50", "need p99", "moved", "held", "decide"));
+  lines.push_back(fmt::format("{:<11} {:>8} {:>7} {:>8} {:>9} {:>7} {:>10} {:>10} {:>9} {:>9} {:>9}", "policy",
+                              "missing", "regret", "coarse", "longest", "holes", "need p50", "need p99", "moved",
+                              "held", "decide"));
   for (const PolicyTrial& p : trial.policies) {
-    lines.push_back(fmt::format(
-        "{:<11} {:>8.3f} {:>7.3f} {:>6.2f} % {:>7.2f} s {:>5.2f} % {:>7.0f} ms {:>7.0f} ms {:>6.0f} MB {:>5.0f} MiB {:>6.1f} us",
-        p.policy, p.missing_octaves, p.regret_octaves, 100.0 * p.coarse_share, p.coarse_run_max_s, 100.0 * p.hole_share,
-        p.need_p50_s * 1e3, p.need_p99_s * 1e3, p.bytes_moved * 1e-6, static_cast<double>(p.held_bytes_max) / (1 << 20),
-        p.decide_p50_ns * 1e-3));
+    lines.push_back(
+        fmt::format("{:<11} {:>8.3f} {:>7.3f} {:>6.2f} % {:>7.2f} s {:>5.2f} % {:>7.0f} ms {:>7.0f} ms {:>6.0f} MB "
+                    "{:>5.0f} MiB {:>6.1f} us",
+                    p.policy, p.missing_octaves, p.regret_octaves, 100.0 * p.coarse_share, p.coarse_run_max_s,
+                    100.0 * p.hole_share, p.need_p50_s * 1e3, p.need_p99_s * 1e3, p.bytes_moved * 1e-6,
+                    static_cast<double>(p.held_bytes_max) / (1 << 20), p.decide_p50_ns * 1e-3));
   }
   return lines;
 }
