@@ -51,6 +51,15 @@ std::optional<glm::dvec3> floor_under_ray(const FloorMap& floor, glm::dvec3 orig
   return std::nullopt;
 }
 
+bool is_clear_way(const FloorMap& floor, glm::dvec3 from_m, glm::dvec3 to_m) {
+  if (floor.nodes.empty()) return true;
+  const int steps = std::max(1, static_cast<int>(std::ceil(glm::length(to_m - from_m) / (floor.cell_m * 0.5))));
+  for (int i = 0; i <= steps; ++i) {
+    if (air_at(floor, from_m + (to_m - from_m) * (static_cast<double>(i) / steps)) == nullptr) return false;
+  }
+  return true;
+}
+
 void Blink::start(glm::dvec3 target_m) {
   if (phase_ != Phase::kNone) return;
   phase_ = Phase::kDown;

@@ -132,6 +132,17 @@ TEST(FloorUnderRay, FindsTheFloorInViewAndNothingBehindWalls) {
   EXPECT_NEAR(through_door->z, 3.0, 0.03);
 }
 
+TEST(ClearWay, EndsAtWallsAndGoesThroughDoors) {
+  const FloorMap floor = make_floor({4, 4}, two_rooms);
+  const glm::dvec3 eye(1, kEyeHeight_m, 1);
+  EXPECT_TRUE(is_clear_way(floor, eye, eye));
+  EXPECT_TRUE(is_clear_way(floor, eye, {3.4, 1.2, 1.2}));
+  EXPECT_FALSE(is_clear_way(floor, eye, {1, 1.3, 3})) << "a hand held through the wall";
+  EXPECT_FALSE(is_clear_way(floor, {1, 1.3, 3}, eye));
+  EXPECT_TRUE(is_clear_way(floor, {3.4, kEyeHeight_m, 1}, {3.4, 1.3, 3})) << "through the door";
+  EXPECT_TRUE(is_clear_way(FloorMap{}, eye, {1, 1.3, 30})) << "without a floor nothing is known to be in the way";
+}
+
 TEST(WallFade, DarkensAndComesBackGradually) {
   WallFade fade;
   fade.advance(false, WallFade::kFade_s / 2);
