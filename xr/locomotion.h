@@ -22,8 +22,8 @@ std::optional<double> floor_height_m(const FloorMap& floor, glm::dvec3 foot_m);
 std::optional<glm::dvec3> floor_under_ray(const FloorMap& floor, glm::dvec3 origin_m, glm::dvec3 direction,
                                           double reach_m = 12.0);
 
-// Free air all the way between two points, as far as the floor's columns know; where there is no floor at all nothing is
-// in the way.
+// Free air over walkable floor all the way between two points. Columns know no air over furniture: a way across it counts
+// as not clear. Where there is no floor at all nothing is in the way.
 bool is_clear_way(const FloorMap& floor, glm::dvec3 from_m, glm::dvec3 to_m);
 
 // A blink: the view darkens, the jump happens in the dark, the view comes back.

@@ -296,15 +296,14 @@ void OpenXrSource::move(double dt_s, XrTime time) {
     XrResult result = XR_SUCCESS;
     const OpenXrInput::Events events = input_->poll(session_.get(), space_.get(), time, result);
     if (!alive(result, "xrSyncActions")) return;
-    // A hand held through a wall aims at nothing, and a middle that lies behind one stays where it is.
-    const glm::dvec3 head_m = rig_.world_from_rig(head.position_m);
-    const glm::dvec3 middle_m(rig_.position_m.x, rig_.position_m.y + space_floor_m_, rig_.position_m.z);
-    if (events.recentre && is_clear_way(floor_, head_m, {middle_m.x, head_m.y, middle_m.z})) blink_.start(middle_m);
+    // Always obeyed: a wearer who has got into a wall or over furniture needs it most.
+    if (events.recentre) blink_.start({rig_.position_m.x, rig_.position_m.y + space_floor_m_, rig_.position_m.z});
     if (events.teleport) {
       const glm::dvec3 hand_m = rig_.world_from_rig(events.teleport->origin_m);
       const glm::dvec3 tip = rig_.world_from_rig(events.teleport->direction) - rig_.position_m;
       const auto target = floor_under_ray(floor_, hand_m, tip);
-      if (target && is_clear_way(floor_, head_m, hand_m)) blink_.start(*target);
+      // A hand held through a wall aims at nothing.
+      if (target && is_clear_way(floor_, rig_.world_from_rig(head.position_m), hand_m)) blink_.start(*target);
     }
   }
   if (const auto target_m = blink_.advance(dt_s)) {

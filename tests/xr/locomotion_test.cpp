@@ -140,6 +140,8 @@ TEST(ClearWay, EndsAtWallsAndGoesThroughDoors) {
   EXPECT_FALSE(is_clear_way(floor, eye, {1, 1.3, 3})) << "a hand held through the wall";
   EXPECT_FALSE(is_clear_way(floor, {1, 1.3, 3}, eye));
   EXPECT_TRUE(is_clear_way(floor, {3.4, kEyeHeight_m, 1}, {3.4, 1.3, 3})) << "through the door";
+  const FloorMap with_table = make_floor({4, 4}, [](double x, double z) { return x > 2 && x < 3 && z > 2 && z < 3 ? NAN : 0.0; });
+  EXPECT_FALSE(is_clear_way(with_table, {1, kEyeHeight_m, 2.5}, {3.5, 1.3, 2.5})) << "columns cannot tell a table from a wall";
   EXPECT_TRUE(is_clear_way(FloorMap{}, eye, {1, 1.3, 30})) << "without a floor nothing is known to be in the way";
 }
 
