@@ -21,11 +21,21 @@ class Chooser {
     level_[k] = level;
   }
 
+  void take_next() {
+    for (std::size_t k = 1; k < rooms_.size(); ++k) {
+      for (std::uint32_t level = book_.levels(rooms_[k].room); rooms_[k].is_next && level-- > 1;) {
+        if (book_.status({rooms_[k].room, level}) == LevelStatus::kFailed || !fits(k, level)) continue;
+        take(k, level);
+        break;
+      }
+    }
+  }
+
   void keep_shown() {
     for (std::size_t k = 1; k < rooms_.size(); ++k) {
       if (!rooms_[k].is_kept) continue;
       const int shown = book_.shown(rooms_[k].room);
-      if (shown > 0 && fits(k, static_cast<std::uint32_t>(shown))) take(k, static_cast<std::uint32_t>(shown));
+      if (shown > static_cast<int>(level_[k]) && fits(k, static_cast<std::uint32_t>(shown))) take(k, static_cast<std::uint32_t>(shown));
     }
   }
 
@@ -98,6 +108,7 @@ std::vector<std::uint32_t> choose_levels(std::span<const RoomWorth> rooms, const
       if (!chooser.fits(0, own)) continue;
       chooser.take(0, own);
     }
+    chooser.take_next();
     chooser.keep_shown();
     chooser.fill();
     if (chooser.worth() > best_worth) {  // of equals the finer

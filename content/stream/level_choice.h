@@ -14,6 +14,7 @@ struct RoomWorth {
   double weight = 0.0;   // of an octave of its detail
   bool is_fine = false;  // worth more than its coarsest level
   bool is_kept = false;  // what it shows stays before anything else is added
+  bool is_next = false;  // entered soon: has its finest level that fits, whatever the others beside the first would do with it
 };
 
 // The level of each of `rooms`, 0 = no more than its coarsest, whose bytes have been paid for; the others together take

@@ -18,6 +18,7 @@ namespace {
 constexpr std::uint64_t kSmallShare = 4;
 constexpr double kMostSpeed_m_s = 5.0;     // a teleport's velocity predicts nothing
 constexpr double kAimDelay_s = 0.5;        // from aiming to being there
+constexpr double kSoon_s = 1.5;            // a room that is entered so soon is the next one
 constexpr double kUnseenWeight = 0.5;      // of a room that the walker is about to enter, against the one around them
 constexpr double kViewWeight = 0.5;        // of a room that fills the view
 constexpr double kBehindWeight = 0.25;     // of one that would, if the head turned
@@ -93,6 +94,14 @@ std::vector<Residency::Candidate> Residency::candidates(const Walker& walker) {
     merged.in_view = merged.in_view || c.in_view;
     merged.fine = merged.fine || c.fine;
   }
+  // On the doorstep the room stays the old one for a while: the one that the head is in is as good as entered.
+  const std::uint32_t entered = graph_.room_of(walker.head_m, -1, 0.0);
+  Candidate* next = nullptr;
+  for (Candidate& c : order) {
+    if (c.room == entered) c.arrival_s = 0.0;
+    if (c.portals == 1 && c.arrival_s < kSoon_s && (next == nullptr || c.arrival_s < next->arrival_s)) next = &c;
+  }
+  if (next != nullptr) next->next = true;
   for (Candidate& c : order) {
     c.weight = c.room == room ? 1.0
                               : std::max(kUnseenWeight * std::exp(-c.arrival_s / options_.patience_s),
@@ -121,10 +130,11 @@ std::vector<LevelKey> Residency::want(const std::vector<Candidate>& order, const
   }
   // Rooms farther off take nothing of what the walker's own and the next one could have.
   std::uint64_t kept = 0;
-  for (std::size_t k = 0; k < std::min<std::size_t>(2, order.size()); ++k) {
+  for (const Candidate& c : order) {
+    if (c.room != order.front().room && !c.next) continue;
     std::uint64_t finest = 0;
-    for (std::uint32_t level = 1; order[k].fine && level < book.levels(order[k].room); ++level) {
-      const std::uint64_t bytes = book.bytes({order[k].room, level});
+    for (std::uint32_t level = 1; level < book.levels(c.room); ++level) {
+      const std::uint64_t bytes = book.bytes({c.room, level});
       if (kept + bytes <= left) finest = std::max(finest, bytes);
     }
     kept += finest;
@@ -135,7 +145,7 @@ std::vector<LevelKey> Residency::want(const std::vector<Candidate>& order, const
   }
 
   std::vector<RoomWorth> rooms;
-  for (const Candidate& c : order) rooms.push_back({c.room, c.weight, c.fine, c.in_view});
+  for (const Candidate& c : order) rooms.push_back({c.room, c.weight, c.fine, c.in_view, c.next});
   const std::vector<std::uint32_t> level = choose_levels(rooms, book, left, options_.sticky);
   // By what a byte is worth, so that the shortest waits come first among equals.
   std::vector<std::pair<double, LevelKey>> fine;

@@ -52,6 +52,7 @@ class Residency final : public StreamingPolicy {
     double weight = 0.0;  // of an octave of its detail
     bool near = false;    // its coarsest level is a must
     bool fine = false;    // near enough, or in sight, for more
+    bool next = false;    // the one that is entered soonest, if that is soon
   };
   std::vector<Candidate> candidates(const Walker& walker);
   std::vector<LevelKey> want(const std::vector<Candidate>& order, const LevelBook& book) const;

@@ -239,10 +239,10 @@ TEST(Residency, AWalkThereAndBackKeepsTheWalkersRoomAndTheBudget) {
 
 TEST(Residency, TheRoomAheadIsReadyWhenItIsEntered) {
   const Manifest m = row_of_rooms(12);
-  Simulation s(m, with_budget(12 * kCoarse + 4 * kFine));
+  Simulation s(m, with_budget(7 * kCoarse + 2 * kFine + kMiddle));
   s.settle(standing(2.0));
   for (double x = 2.0; x < 46.0; x += 0.02) {
-    const ResidencyDecision d = s.step({{x, 1.6, 2.0}, {1.4, 0.0, 0.0}, {1.0, 0.0, 0.0}});
+    const ResidencyDecision d = s.step({{x, 1.6, 2.0}, {1.4, 0.0, 0.0}});
     ASSERT_TRUE(s.resident(d.room, 2)) << x;
   }
 }
