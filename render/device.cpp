@@ -119,6 +119,7 @@ struct Device::Impl {
   bool has_calibrated_timestamps = false;
   float timestamp_period_ns = 1.0f;
   std::atomic<std::uint64_t> allocated_bytes{0};
+  std::atomic<std::uint32_t> pipelines_built{0};
   std::mutex queue_mutex;
 
   ~Impl() {
@@ -253,6 +254,10 @@ bool Device::has_calibrated_timestamps() const { return impl_->has_calibrated_ti
 float Device::timestamp_period_ns() const { return impl_->timestamp_period_ns; }
 std::uint32_t Device::validation_messages() const { return impl_->validation.messages(); }
 std::uint64_t Device::allocated_bytes() const { return impl_->allocated_bytes; }
+
+std::uint32_t Device::pipelines_built() const { return impl_->pipelines_built; }
+
+void Device::count_pipeline() const { ++impl_->pipelines_built; }
 
 std::unique_lock<std::mutex> Device::lock_queue() const { return std::unique_lock(impl_->queue_mutex); }
 

@@ -63,6 +63,9 @@ class Device {
   std::uint32_t validation_messages() const;
   // Bytes of device memory allocated through this device and not freed, as vkAllocateMemory saw them.
   std::uint64_t allocated_bytes() const;
+  // Pipelines made for this device so far: what a frame must not wait for. Whoever makes one counts it.
+  std::uint32_t pipelines_built() const;
+  void count_pipeline() const;
   // To be held around calls of others that use the queue (xrEndFrame and the like, vkQueuePresentKHR).
   [[nodiscard]] std::unique_lock<std::mutex> lock_queue() const;
   // Serialises vkQueueSubmit and friends between the frame thread, the loader and the mirror.
