@@ -41,14 +41,16 @@ EdgeSampler::EdgeSampler(const Device& device, const StorageImageSet& images, co
     : images_(images),
       options_(options),
       list_(device, list_bytes(options), BufferMemory::kDevice, VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT),
-      find_(Pipeline::compute(device, &images, spirv::k_find_edges_comp,
-                              {options.interleave, options.foveated ? VK_TRUE : VK_FALSE})),
+      find_(Pipeline::compute(
+          device, &images, spirv::k_find_edges_comp,
+          {options.interleave, options.foveated ? VK_TRUE : VK_FALSE, options.masked ? VK_TRUE : VK_FALSE})),
       sample_(Pipeline::compute(
           device, &images,
           tracing_module(options.choice, spirv::k_sample_edges_comp, spirv::k_sample_edges_baseline_comp),
-          tracing_constants({options.aov ? VK_TRUE : VK_FALSE, options.interleave, options.samples}, options.choice))) {}
+          tracing_constants({options.aov ? VK_TRUE : VK_FALSE, options.interleave, options.samples}, options.choice))) {
+}
 
-void EdgeSampler::record(VkCommandBuffer commands, VkDeviceAddress frame) const {
+void EdgeSampler::record(VkCommandBuffer commands, VkDeviceAddress frame, VkExtent2D extent_px) const {
   constexpr VkPipelineStageFlags2 kCompute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
   constexpr VkAccessFlags2 kRead = VK_ACCESS_2_SHADER_STORAGE_READ_BIT, kWrite = VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT;
   const PushConstants push{.constants = frame, .list = list_.address()};
@@ -61,8 +63,8 @@ void EdgeSampler::record(VkCommandBuffer commands, VkDeviceAddress frame) const 
   memory_barrier(commands, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT | kCompute, VK_ACCESS_2_TRANSFER_WRITE_BIT | kWrite,
                  kCompute, kRead | kWrite);
   find_.bind(commands, &images_, push);
-  const VkExtent2D extent = options_.extent_px;
-  vkCmdDispatch(commands, (extent.width + kTile - 1) / kTile, (extent.height + kTile - 1) / kTile, options_.views);
+  vkCmdDispatch(commands, (extent_px.width + kTile - 1) / kTile, (extent_px.height + kTile - 1) / kTile,
+                options_.views);
   memory_barrier(commands, kCompute, kWrite, kCompute | VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT,
                  kRead | kWrite | VK_ACCESS_2_INDIRECT_COMMAND_READ_BIT);
   sample_.bind(commands, &images_, push);

@@ -18,6 +18,7 @@ struct EdgeSamplerOptions {
   bool aov = false;
   std::uint32_t samples = 4;     // rays of a pixel at an edge, the first one's included: 2 or 4
   std::uint32_t interleave = 1;  // see kInterleave in trace_stereo.glsl
+  bool masked = false;           // hidden tiles get none
   bool foveated = false;         // tiles with a ray for several pixels get no more (shaders/shared/foveation.h)
   TracerChoice choice;           // how rays are answered; its maps are named by the FrameConstants
 };
@@ -28,8 +29,8 @@ class EdgeSampler {
   EdgeSampler(const Device& device, const StorageImageSet& images, const EdgeSamplerOptions& options);
 
   // After the dispatch that has written the images, without a barrier between. Its own writes are left to the caller's
-  // next barrier. `frame` is the device address of the FrameConstants.
-  void record(VkCommandBuffer commands, VkDeviceAddress frame) const;
+  // next barrier. `frame` is the device address of the FrameConstants, whose size `extent_px` is: within the options'.
+  void record(VkCommandBuffer commands, VkDeviceAddress frame, VkExtent2D extent_px) const;
 
  private:
   const StorageImageSet& images_;

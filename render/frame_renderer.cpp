@@ -6,7 +6,9 @@
 #include <cmath>
 #include <cstring>
 #include <deque>
+#include <future>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include "render/buffer.h"
@@ -14,6 +16,7 @@
 #include "render/depth_pass.h"
 #include "render/resolve.h"
 #include "render/view.h"
+#include "shaders/shared/foveation.h"
 
 namespace probewalk {
 namespace {
@@ -56,10 +59,12 @@ struct FrameSlot {
   VkCommandPool pool = VK_NULL_HANDLE;
   std::array<VkCommandBuffer, kCommandBuffers> commands{};
   Buffer constants;  // FrameConstants
+  Buffer hidden;     // with a visibility mask
+  std::uint64_t hidden_version = 0;
   PassTimer timer;
   std::vector<VkImageView> layer_views, depth_views;  // of the target
-  std::uint64_t frame = 0;          // submitted last from this slot
-  std::uint64_t last_work = 0;      // timeline value of the slot's last submit
+  std::uint64_t frame = 0;                            // submitted last from this slot
+  std::uint64_t last_work = 0;                        // timeline value of the slot's last submit
   bool has_untaken_times = false;
 };
 
@@ -86,6 +91,19 @@ VkSemaphoreSubmitInfo semaphore_info(VkSemaphore semaphore, std::uint64_t value,
   return info;
 }
 
+// What traces and what shows it.
+struct Passes {
+  Passes(const Device& device, TracerOptions options, const FrameRendererOptions& dials, Resolve::Shown shown)
+      : tracer(device, options),
+        resolve(device, shown == Resolve::Shown::kPicture ? tracer.radiance() : tracer.aov(), dials.target_format,
+                shown) {
+    if (dials.depth_format != VK_FORMAT_UNDEFINED) depth.emplace(device, tracer.distance(), dials.depth_format);
+  }
+  const StereoTracer tracer;
+  const Resolve resolve;
+  std::optional<DepthPass> depth;
+};
+
 }  // namespace
 
 struct FrameRenderer::Impl {
@@ -93,14 +111,13 @@ struct FrameRenderer::Impl {
       : device(owner),
         store(probes),
         options(dials),
-        tracer(owner, dials.tracer),
-        resolve(owner, tracer.radiance(), dials.target_format),
+        picture(owner, dials.tracer, dials, Resolve::Shown::kPicture),
         clock(owner),
         timeline(make_timeline(owner)) {
-    if (dials.depth_format != VK_FORMAT_UNDEFINED) depth.emplace(owner, tracer.distance(), dials.depth_format);
     for (std::uint32_t i = 0; i < kFrameSlots; ++i) slots.emplace_back(owner);
   }
   ~Impl() {
+    if (lookups_to_come.valid()) lookups_to_come.wait();
     // Not wait_for: a lost device must not throw here.
     vkDeviceWaitIdle(device.handle());
     slots.clear();
@@ -127,6 +144,26 @@ struct FrameRenderer::Impl {
       if (each.last_work <= done) frame = std::max(frame, each.frame);
     }
     return frame;
+  }
+
+  // Which passes the next frame is drawn by.
+  const Passes& choose_passes() {
+    if (lookups_to_come.valid() && lookups_to_come.wait_for(std::chrono::seconds(0)) == std::future_status::ready) {
+      lookups = lookups_to_come.get();
+    }
+    if (wants_lookups && lookups) {
+      last_lookups_frame = next_frame;
+      return *lookups;
+    }
+    if (wants_lookups && !lookups_to_come.valid()) {
+      lookups_to_come = std::async(std::launch::async, [this]() -> std::unique_ptr<const Passes> {
+        TracerOptions counting = options.tracer;
+        counting.aov = true;
+        return std::make_unique<const Passes>(device, counting, options, Resolve::Shown::kLookups);
+      });
+    }
+    if (!wants_lookups && lookups && completed_frame() >= last_lookups_frame) lookups.reset();
+    return picture;
   }
 
   void submit(std::span<const VkCommandBuffer> buffers, VkSemaphore wait_before, VkSemaphore signal_after) {
@@ -165,28 +202,99 @@ struct FrameRenderer::Impl {
     const auto resolved = finished.timer.read(kResolve, clock);
     if (!trace || !resolved) return;
     finished.has_untaken_times = false;
-    times.push_back({finished.frame, *trace, *resolved, {trace->begin_ns, resolved->end_ns}, clock.calibrated(),
+    times.push_back({finished.frame,
+                     *trace,
+                     *resolved,
+                     {trace->begin_ns, resolved->end_ns},
+                     clock.calibrated(),
                      clock.max_deviation_ns()});
     if (times.size() > kTimesKept) times.pop_front();
   }
 
+  // For pictures of all of `tracer`'s extent, from the probes that the slot's frame sees.
+  FrameConstants constants_for(const TracerOptions& tracer, std::span<const ViewConstants> views,
+                               const FrameSettings& settings, std::uint32_t slot_of_grid) const;
+  // The words for these views in the slot's buffer.
+  VkDeviceAddress hidden_tiles_address(std::span<const ViewConstants> views);
+
   const Device& device;
   ProbeStore& store;
   const FrameRendererOptions options;
-  const StereoTracer tracer;
-  const Resolve resolve;
-  std::optional<DepthPass> depth;
+  const Passes picture;
+  // While look-ups are shown, and until the last frame that shows them is done.
+  bool wants_lookups = false;
+  std::unique_ptr<const Passes> lookups;
+  std::future<std::unique_ptr<const Passes>> lookups_to_come;
+  std::uint64_t last_lookups_frame = 0;
+  const Passes* used = &picture;  // of the frame recorded last
   GpuClock clock;
   VkSemaphore timeline;
   std::deque<FrameSlot> slots;
-  std::uint64_t work = 0;  // timeline value of the last submit
+  std::uint64_t work = 0;       // timeline value of the last submit
+  std::uint64_t side_work = 0;  // of the last one beside a frame
   std::uint64_t next_frame = 1;
   std::uint64_t bytes_copied = 0;
   std::chrono::nanoseconds blocked{0};  // of the last record
   FrameTarget target;
   bool is_recorded = false, is_written = false;
   std::deque<FrameGpuTimes> times;
+  // With a visibility mask: its meshes, and the tiles that they hide of views like the last.
+  std::vector<HiddenMesh> hidden_meshes;
+  std::vector<glm::vec4> hidden_tan_angles;
+  VkExtent2D hidden_extent{};
+  std::vector<std::uint32_t> hidden_words;
+  std::uint64_t hidden_version = 0;  // counts changes of the words
 };
+
+FrameConstants FrameRenderer::Impl::constants_for(const TracerOptions& tracer, std::span<const ViewConstants> views,
+                                                  const FrameSettings& settings, std::uint32_t slot_of_grid) const {
+  FrameConstants constants{};
+  constants.grid = store.grid(slot_of_grid);
+  constants.trace = with_choice(settings.trace, tracer.setup.choice);
+  constants.baseline_address = baseline_address(tracer.setup);
+  constants.size_px = {static_cast<int>(tracer.extent_px.width), static_cast<int>(tracer.extent_px.height)};
+  constants.view_count = static_cast<int>(views.size());
+  constants.exposure = settings.exposure;
+  constants.fade = settings.fade;
+  constants.frame_index = static_cast<std::uint32_t>(next_frame);
+  constants.near_m = settings.depth.near_m;
+  constants.far_m = settings.depth.far_m;
+  if (tracer.foveation) {
+    constants.full_rate_cosine = std::cos(tracer.foveation->full_rad);
+    constants.half_rate_cosine = std::cos(tracer.foveation->half_rad);
+  }
+  std::copy(views.begin(), views.end(), constants.view);
+  share_choice({constants.view, views.size()});
+  return constants;
+}
+
+VkDeviceAddress FrameRenderer::Impl::hidden_tiles_address(std::span<const ViewConstants> views) {
+  std::vector<glm::vec4> tan_angles;
+  for (const ViewConstants& view : views) tan_angles.push_back(view.tan_angles);
+  const bool same_extent = hidden_extent.width == target.extent.width && hidden_extent.height == target.extent.height;
+  if (tan_angles != hidden_tan_angles || !same_extent) {
+    hidden_tan_angles = std::move(tan_angles);
+    hidden_extent = target.extent;
+    // As far as what a visible pixel is made of: its neighbours at an edge, the blocks around it where they are coarse.
+    const int margin_px = options.tracer.foveation ? kFoveationTile : 2;
+    std::vector<std::vector<std::uint8_t>> tiles;
+    for (std::size_t i = 0; i < views.size(); ++i) {
+      tiles.push_back(hidden_tiles(i < hidden_meshes.size() ? hidden_meshes[i] : HiddenMesh{}, hidden_tan_angles[i],
+                                   hidden_extent, margin_px));
+    }
+    hidden_words = hidden_tile_words(tiles);
+    ++hidden_version;
+  }
+  FrameSlot& mine = slot();
+  if (mine.hidden_version != hidden_version) {
+    const VkDeviceSize bytes = hidden_words.size() * sizeof(std::uint32_t);
+    if (mine.hidden.size_bytes() < bytes) mine.hidden = Buffer(device, bytes, BufferMemory::kShared);
+    std::memcpy(mine.hidden.mapped(), hidden_words.data(), bytes);
+    mine.hidden.flush();
+    mine.hidden_version = hidden_version;
+  }
+  return mine.hidden.address();
+}
 
 FrameRenderer::FrameRenderer(const Device& device, ProbeStore& store, const FrameRendererOptions& options)
     : impl_(std::make_unique<Impl>(device, store, options)) {}
@@ -197,8 +305,8 @@ void FrameRenderer::record(const FrameTarget& target) {
   Impl& impl = *impl_;
   const TracerOptions& tracer = impl.options.tracer;
   if (target.format != impl.options.target_format || target.depth_format != impl.options.depth_format ||
-      (target.depth_image != VK_NULL_HANDLE) != impl.depth.has_value() || target.layers != tracer.views ||
-      target.extent.width != tracer.extent_px.width || target.extent.height != tracer.extent_px.height) {
+      (target.depth_image != VK_NULL_HANDLE) != impl.picture.depth.has_value() || target.layers != tracer.views ||
+      target.extent.width > tracer.extent_px.width || target.extent.height > tracer.extent_px.height) {
     throw std::logic_error("a frame's target differs from what the renderer was made for");
   }
   FrameSlot& slot = impl.slot();
@@ -213,15 +321,16 @@ void FrameRenderer::record(const FrameTarget& target) {
   for (std::uint32_t layer = 0; layer < target.layers; ++layer) {
     slot.layer_views.push_back(make_layer_view(impl.device, target.image, target.format, layer));
   }
-  for (std::uint32_t layer = 0; impl.depth && layer < target.layers; ++layer) {
+  impl.used = &impl.choose_passes();
+  const Passes& passes = *impl.used;
+  for (std::uint32_t layer = 0; passes.depth && layer < target.layers; ++layer) {
     slot.depth_views.push_back(make_layer_view(impl.device, target.depth_image, target.depth_format, layer));
   }
   check(vkResetCommandPool(impl.device.handle(), slot.pool, 0), "vkResetCommandPool");
 
   const VkCommandBuffer upload = slot.commands[kUploadCommands];
   begin_commands(upload);
-  impl.bytes_copied =
-      impl.store.begin_frame(upload, impl.slot_index(), impl.next_frame, impl.completed_frame());
+  impl.bytes_copied = impl.store.begin_frame(upload, impl.slot_index(), impl.next_frame, impl.completed_frame());
   check(vkEndCommandBuffer(upload), "vkEndCommandBuffer");
   // At once: the copies must happen even when the frame is given up before its submit.
   if (impl.bytes_copied > 0) impl.submit({&upload, 1}, VK_NULL_HANDLE, VK_NULL_HANDLE);
@@ -229,14 +338,14 @@ void FrameRenderer::record(const FrameTarget& target) {
   const VkDeviceAddress constants = slot.constants.address();
   begin_commands(slot.commands[kTrace]);
   slot.timer.begin(slot.commands[kTrace], kTrace);
-  impl.tracer.record(slot.commands[kTrace], constants);
+  passes.tracer.record(slot.commands[kTrace], constants, target.extent);
   slot.timer.end(slot.commands[kTrace], kTrace);
   check(vkEndCommandBuffer(slot.commands[kTrace]), "vkEndCommandBuffer");
 
   begin_commands(slot.commands[kResolve]);
   slot.timer.begin(slot.commands[kResolve], kResolve);
-  impl.resolve.record(slot.commands[kResolve], constants, target, slot.layer_views);
-  if (impl.depth) impl.depth->record(slot.commands[kResolve], constants, target, slot.depth_views);
+  passes.resolve.record(slot.commands[kResolve], constants, target, slot.layer_views);
+  if (passes.depth) passes.depth->record(slot.commands[kResolve], constants, target, slot.depth_views);
   slot.timer.end(slot.commands[kResolve], kResolve);
   check(vkEndCommandBuffer(slot.commands[kResolve]), "vkEndCommandBuffer");
   impl.target = target;
@@ -250,27 +359,22 @@ void FrameRenderer::write(std::span<const ViewConstants> views, const FrameSetti
   if (!impl.is_recorded || views.size() != tracer.views) {
     throw std::logic_error("a frame's views are written after record, as many as the renderer was made for");
   }
-  FrameConstants constants{};
-  constants.grid = impl.store.grid(impl.slot_index());
-  constants.trace = with_choice(settings.trace, tracer.setup.choice);
-  constants.baseline_address = baseline_address(tracer.setup);
-  constants.size_px = {static_cast<int>(tracer.extent_px.width), static_cast<int>(tracer.extent_px.height)};
-  constants.view_count = static_cast<int>(views.size());
-  constants.exposure = settings.exposure;
-  constants.fade = settings.fade;
-  constants.frame_index = static_cast<std::uint32_t>(impl.next_frame);
-  constants.near_m = settings.depth.near_m;
-  constants.far_m = settings.depth.far_m;
-  if (tracer.foveation) {
-    constants.full_rate_cosine = std::cos(tracer.foveation->full_rad);
-    constants.half_rate_cosine = std::cos(tracer.foveation->half_rad);
-  }
-  std::copy(views.begin(), views.end(), constants.view);
-  share_choice({constants.view, views.size()});
+  FrameConstants constants = impl.constants_for(tracer, views, settings, impl.slot_index());
+  constants.size_px = {static_cast<int>(impl.target.extent.width), static_cast<int>(impl.target.extent.height)};
+  if (tracer.masked) constants.hidden_tiles_address = address_words(impl.hidden_tiles_address(views));
   const Buffer& buffer = impl.slot().constants;
   std::memcpy(buffer.mapped(), &constants, sizeof(constants));
   buffer.flush();
   impl.is_written = true;
+}
+
+void FrameRenderer::show_lookups(bool shown) {
+  impl_->wants_lookups = shown;
+}
+
+void FrameRenderer::hide(std::vector<HiddenMesh> meshes) {
+  impl_->hidden_meshes = std::move(meshes);
+  impl_->hidden_tan_angles.clear();
 }
 
 std::uint64_t FrameRenderer::submit() {
@@ -284,9 +388,35 @@ std::uint64_t FrameRenderer::submit() {
   return impl.next_frame++;
 }
 
-std::int64_t FrameRenderer::blocked_ns() const { return impl_->blocked.count(); }
+bool FrameRenderer::submit_beside(SideView& side, const ViewConstants& view, const FrameSettings& settings) {
+  Impl& impl = *impl_;
+  std::uint64_t done = 0;
+  check(vkGetSemaphoreCounterValue(impl.device.handle(), impl.timeline, &done), "vkGetSemaphoreCounterValue");
+  if (impl.next_frame == 1 || impl.is_recorded || done < impl.side_work) return false;
+  const auto last = static_cast<std::uint32_t>((impl.next_frame - 1) % kFrameSlots);
+  const VkCommandBuffer commands = side.record(impl.constants_for(side.options(), {&view, 1}, settings, last));
+  VkCommandBufferSubmitInfo buffer{VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO};
+  buffer.commandBuffer = commands;
+  const VkSemaphoreSubmitInfo signal =
+      semaphore_info(impl.timeline, impl.work + 1, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT);
+  VkSubmitInfo2 info{VK_STRUCTURE_TYPE_SUBMIT_INFO_2};
+  info.commandBufferInfoCount = 1;
+  info.pCommandBufferInfos = &buffer;
+  info.signalSemaphoreInfoCount = 1;
+  info.pSignalSemaphoreInfos = &signal;
+  impl.device.submit(info, VK_NULL_HANDLE);
+  // The frame's probes stay until this is done, too.
+  impl.side_work = impl.slots[last].last_work = ++impl.work;
+  return true;
+}
 
-std::uint64_t FrameRenderer::bytes_copied() const { return impl_->bytes_copied; }
+std::int64_t FrameRenderer::blocked_ns() const {
+  return impl_->blocked.count();
+}
+
+std::uint64_t FrameRenderer::bytes_copied() const {
+  return impl_->bytes_copied;
+}
 
 std::optional<FrameGpuTimes> FrameRenderer::take_times() {
   Impl& impl = *impl_;
@@ -297,8 +427,12 @@ std::optional<FrameGpuTimes> FrameRenderer::take_times() {
   return oldest;
 }
 
-void FrameRenderer::wait() { impl_->wait_for(impl_->work); }
+void FrameRenderer::wait() {
+  impl_->wait_for(impl_->work);
+}
 
-const StereoTracer& FrameRenderer::tracer() const { return impl_->tracer; }
+const StereoTracer& FrameRenderer::tracer() const {
+  return impl_->used->tracer;
+}
 
 }  // namespace probewalk

@@ -9,12 +9,15 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "render/depth_range.h"
 #include "render/device.h"
 #include "render/frame_target.h"
 #include "render/gpu_clock.h"
+#include "render/hidden_tiles.h"
 #include "render/probe_store.h"
+#include "render/side_view.h"
 #include "render/stereo_tracer.h"
 
 namespace probewalk {
@@ -29,18 +32,18 @@ struct FrameRendererOptions {
 
 // What a frame is drawn with, beside what the store holds.
 struct FrameSettings {
-  TraceConstants trace{};   // radiance_scale as the pack says; what the tracer's choice says of the dials goes over it
-  float exposure = 1.0f;    // cd/m^2 * exposure = 1 is display white before the tone curve (exposure_from_ev)
-  float fade = 0.0f;        // 0 = picture, 1 = black
-  DepthRange depth;         // of the depth image, if there is one
+  TraceConstants trace{};  // radiance_scale as the pack says; what the tracer's choice says of the dials goes over it
+  float exposure = 1.0f;   // cd/m^2 * exposure = 1 is display white before the tone curve (exposure_from_ev)
+  float fade = 0.0f;       // 0 = picture, 1 = black
+  DepthRange depth;        // of the depth image, if there is one
 };
 
 // Device times of a finished frame.
 struct FrameGpuTimes {
-  std::uint64_t frame = 0;  // number that submit() returned
+  std::uint64_t frame = 0;     // number that submit() returned
   GpuInterval trace, resolve;  // depth counts as resolve
-  GpuInterval whole;  // from the first pass's begin to the last one's end
-  bool calibrated = false;           // on CLOCK_MONOTONIC; else only differences mean something
+  GpuInterval whole;           // from the first pass's begin to the last one's end
+  bool calibrated = false;     // on CLOCK_MONOTONIC; else only differences mean something
   std::int64_t max_deviation_ns = 0;
 };
 
@@ -54,12 +57,23 @@ class FrameRenderer {
   FrameRenderer& operator=(const FrameRenderer&) = delete;
 
   // Waits until the frame before the last has finished, takes in what has streamed, records the passes. The target has
-  // the options' formats, and as many layers as there are views.
+  // the options' formats, as many layers as there are views, and an extent within theirs.
   void record(const FrameTarget& target);
   // Writes the views' poses and the settings; callable again until submit. As many views as in the options.
   void write(std::span<const ViewConstants> views, const FrameSettings& settings);
+  // Shows the look-ups of each pixel instead of the picture, or the picture again. What that needs is made on a thread
+  // of its own, and the picture stays until it is there; nothing of it is kept while the picture is shown.
+  void show_lookups(bool shown);
+  // What the headset's optics hide of each view, from the next write on; only where options.tracer.masked. Tiles are
+  // found anew when the meshes, the fields of view or the extent change, which takes a millisecond or so.
+  void hide(std::vector<HiddenMesh> meshes);
   // Returns the frame's number, from 1.
   std::uint64_t submit();
+
+  // One view more from what the frame submitted last was drawn from, with the same settings; after the frame, so that
+  // it holds up none of its passes. False, and nothing is done, while the device is still at the last one of `side`,
+  // which must always be given to the same renderer and outlive its work (wait()).
+  bool submit_beside(SideView& side, const ViewConstants& view, const FrameSettings& settings);
 
   // How long the last record waited for the device.
   std::int64_t blocked_ns() const;

@@ -11,7 +11,7 @@ namespace probewalk {
 struct FrameTarget {
   VkImage image = VK_NULL_HANDLE;
   VkFormat format = VK_FORMAT_UNDEFINED;  // an sRGB format: the attachment encodes
-  VkExtent2D extent{};
+  VkExtent2D extent{};  // that is drawn, from the upper left corner: the image may be larger
   std::uint32_t layers = 0;
   VkImageLayout initial_layout = VK_IMAGE_LAYOUT_UNDEFINED;
   VkImageLayout final_layout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;

@@ -131,9 +131,20 @@ Pipeline Pipeline::compute(const Device& device, const StorageImageSet* images, 
 Pipeline Pipeline::full_screen(const Device& device, const StorageImageSet& images,
                                std::span<const std::uint32_t> vertex_spirv,
                                std::span<const std::uint32_t> fragment_spirv, VkFormat format) {
-  Pipeline result(device, &images, VK_PIPELINE_BIND_POINT_GRAPHICS, VK_SHADER_STAGE_FRAGMENT_BIT);
-  const ShaderModule vertex(device.handle(), vertex_spirv);
-  const ShaderModule fragment(device.handle(), fragment_spirv);
+  return graphics(device, &images, VK_SHADER_STAGE_FRAGMENT_BIT, {vertex_spirv, fragment_spirv}, format, false);
+}
+
+Pipeline Pipeline::blended(const Device& device, std::span<const std::uint32_t> vertex_spirv,
+                           std::span<const std::uint32_t> fragment_spirv, VkFormat format) {
+  return graphics(device, nullptr, VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT,
+                  {vertex_spirv, fragment_spirv}, format, true);
+}
+
+Pipeline Pipeline::graphics(const Device& device, const StorageImageSet* images, VkShaderStageFlags pushed_to,
+                            const Spirv& spirv, VkFormat format, bool blends) {
+  Pipeline result(device, images, VK_PIPELINE_BIND_POINT_GRAPHICS, pushed_to);
+  const ShaderModule vertex(device.handle(), spirv.vertex);
+  const ShaderModule fragment(device.handle(), spirv.fragment);
   const std::array stages{vertex.stage(VK_SHADER_STAGE_VERTEX_BIT), fragment.stage(VK_SHADER_STAGE_FRAGMENT_BIT)};
 
   const VkPipelineVertexInputStateCreateInfo vertex_input{VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO};
@@ -149,6 +160,11 @@ Pipeline Pipeline::full_screen(const Device& device, const StorageImageSet& imag
   VkPipelineColorBlendAttachmentState attachment{};
   attachment.colorWriteMask =
       VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT | VK_COLOR_COMPONENT_B_BIT | VK_COLOR_COMPONENT_A_BIT;
+  attachment.blendEnable = blends ? VK_TRUE : VK_FALSE;
+  attachment.srcColorBlendFactor = VK_BLEND_FACTOR_SRC_ALPHA;
+  attachment.dstColorBlendFactor = VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA;
+  attachment.srcAlphaBlendFactor = VK_BLEND_FACTOR_ONE;
+  attachment.dstAlphaBlendFactor = VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA;
   VkPipelineColorBlendStateCreateInfo blend{VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO};
   const bool is_depth = aspect_of(format) == VK_IMAGE_ASPECT_DEPTH_BIT;
   blend.attachmentCount = is_depth ? 0 : 1;

@@ -36,7 +36,7 @@ struct PushConstants {
   VkDeviceAddress constants = 0;  // where the rest lies
   std::uint32_t view = 0;         // that a draw is for
   std::uint32_t reserved = 0;
-  VkDeviceAddress list = 0;       // of edge pixels, where a pass fills or reads one (shaders/shared/edge_list.h)
+  VkDeviceAddress list = 0;  // of edge pixels, where a pass fills or reads one (shaders/shared/edge_list.h)
 };
 
 // Owns a pipeline and its layout.
@@ -49,6 +49,10 @@ class Pipeline {
   static Pipeline full_screen(const Device& device, const StorageImageSet& images,
                               std::span<const std::uint32_t> vertex_spirv,
                               std::span<const std::uint32_t> fragment_spirv, VkFormat format);
+  // Triangles that the vertex shader fetches by itself, laid over a colour attachment by their alpha. Both shaders see
+  // the push constants; no images.
+  static Pipeline blended(const Device& device, std::span<const std::uint32_t> vertex_spirv,
+                          std::span<const std::uint32_t> fragment_spirv, VkFormat format);
   ~Pipeline();
   Pipeline(Pipeline&& other) noexcept;
   Pipeline& operator=(Pipeline&&) = delete;
@@ -56,6 +60,11 @@ class Pipeline {
   void bind(VkCommandBuffer commands, const StorageImageSet* images, const PushConstants& push) const;
 
  private:
+  struct Spirv {
+    std::span<const std::uint32_t> vertex, fragment;
+  };
+  static Pipeline graphics(const Device& device, const StorageImageSet* images, VkShaderStageFlags pushed_to,
+                           const Spirv& spirv, VkFormat format, bool blends);
   Pipeline(const Device& device, const StorageImageSet* images, VkPipelineBindPoint bind_point,
            VkShaderStageFlags stages);
 

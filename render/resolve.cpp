@@ -4,8 +4,8 @@
 
 namespace probewalk {
 
-Resolve::Resolve(const Device& device, const Image& radiance, VkFormat format)
-    : pass_(device, radiance, spirv::k_resolve_frag, format) {}
+Resolve::Resolve(const Device& device, const Image& source, VkFormat format, Shown shown)
+    : pass_(device, source, shown == Shown::kPicture ? spirv::k_resolve_frag : spirv::k_lookups_frag, format) {}
 
 void Resolve::record(VkCommandBuffer commands, VkDeviceAddress frame, const FrameTarget& target,
                      std::span<const VkImageView> layer_views) const {

@@ -1,4 +1,5 @@
-// Linear radiance to what the display shows: exposure, tone curve, fade, dither.
+// Linear radiance to what the display shows: exposure, tone curve, fade, dither. Or, to look at the tracer's work, its
+// look-ups as colours.
 #pragma once
 
 #include <volk.h>
@@ -14,8 +15,11 @@ namespace probewalk {
 
 class Resolve {
  public:
-  // `radiance` outlives this; `format` is an sRGB format, whose attachment encodes what is written.
-  Resolve(const Device& device, const Image& radiance, VkFormat format);
+  // What is shown of the trace.
+  enum class Shown { kPicture, kLookups };
+  // `source` outlives this: the tracer's radiance, or its counts; `format` is an sRGB format, whose attachment encodes
+  // what is written.
+  Resolve(const Device& device, const Image& source, VkFormat format, Shown shown = Shown::kPicture);
 
   // Draws over every texel of `target.image`, whatever its layout, and leaves it in its final layout. `layer_views`:
   // one view (VK_IMAGE_VIEW_TYPE_2D) of each layer. `frame` is the device address of the FrameConstants.

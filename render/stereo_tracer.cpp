@@ -12,15 +12,15 @@ namespace {
 constexpr std::uint32_t kTile = 8;  // local size of trace_stereo.glsl, both ways
 
 // Rows of tiles a view, made up so that the interleave divides those of all views.
-std::uint32_t tile_rows(const TracerOptions& options, std::uint32_t interleave) {
-  const std::uint32_t rows = (options.extent_px.height + kTile - 1) / kTile;
-  const std::uint32_t step = interleave / std::gcd(interleave, options.views);
+std::uint32_t tile_rows(std::uint32_t height_px, std::uint32_t views, std::uint32_t interleave) {
+  const std::uint32_t rows = (height_px + kTile - 1) / kTile;
+  const std::uint32_t step = interleave / std::gcd(interleave, views);
   return (rows + step - 1) / step * step;
 }
 
 Image make_output(const Device& device, const TracerOptions& options, VkFormat format) {
-  return Image(device, {format, options.extent_px, options.views,
-                        VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT});
+  return Image(
+      device, {format, options.extent_px, options.views, VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT});
 }
 
 const TracerOptions& checked(const TracerOptions& options) {
@@ -42,19 +42,20 @@ StereoTracer::StereoTracer(const Device& device, const TracerOptions& options)
       distance_(make_output(device, options, VK_FORMAT_R32_SFLOAT)),
       aov_(make_output(device, options.aov ? options : one_texel(options), VK_FORMAT_R32G32B32A32_UINT)),
       images_(device, VK_SHADER_STAGE_COMPUTE_BIT, {radiance_.view(), distance_.view(), aov_.view()}),
-      pipeline_(Pipeline::compute(device, &images_,
-                                  tracing_module(options.setup.choice, spirv::k_trace_stereo_comp,
-                                                 spirv::k_trace_stereo_baseline_comp),
-                                  tracing_constants({options.aov ? VK_TRUE : VK_FALSE, interleave_,
-                                                     options.foveation ? VK_TRUE : VK_FALSE},
-                                                    options.setup.choice))) {
+      pipeline_(Pipeline::compute(
+          device, &images_,
+          tracing_module(options.setup.choice, spirv::k_trace_stereo_comp, spirv::k_trace_stereo_baseline_comp),
+          tracing_constants({options.aov ? VK_TRUE : VK_FALSE, interleave_, options.foveation ? VK_TRUE : VK_FALSE,
+                             options.masked ? VK_TRUE : VK_FALSE},
+                            options.setup.choice))) {
   if (options.foveation) {
-    fill_.emplace(Pipeline::compute(device, &images_, spirv::k_fill_blocks_comp, {options.aov ? VK_TRUE : VK_FALSE}));
+    fill_.emplace(Pipeline::compute(device, &images_, spirv::k_fill_blocks_comp,
+                                    {options.aov ? VK_TRUE : VK_FALSE, options.masked ? VK_TRUE : VK_FALSE}));
   }
   if (options.samples != 1) {
     edges_ = std::make_unique<EdgeSampler>(
         device, images_,
-        EdgeSamplerOptions{options.extent_px, options.views, options.aov, options.samples, interleave_,
+        EdgeSamplerOptions{options.extent_px, options.views, options.aov, options.samples, interleave_, options.masked,
                            options.foveation.has_value(), options.setup.choice});
   }
   // The images stay in the general layout for good.
@@ -65,22 +66,22 @@ StereoTracer::StereoTracer(const Device& device, const TracerOptions& options)
   });
 }
 
-void StereoTracer::record(VkCommandBuffer commands, VkDeviceAddress frame) const {
+void StereoTracer::record(VkCommandBuffer commands, VkDeviceAddress frame, VkExtent2D extent_px) const {
   VkMemoryBarrier2 barrier{VK_STRUCTURE_TYPE_MEMORY_BARRIER_2};
   VkDependencyInfo dependency{VK_STRUCTURE_TYPE_DEPENDENCY_INFO};
   dependency.memoryBarrierCount = 1;
   dependency.pMemoryBarriers = &barrier;
   // Whoever reads or wrote the last frame's images comes first.
-  barrier.srcStageMask = VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT | VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT |
-                         VK_PIPELINE_STAGE_2_COPY_BIT;
+  barrier.srcStageMask =
+      VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT | VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_2_COPY_BIT;
   barrier.srcAccessMask = VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT;
   barrier.dstStageMask = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
   barrier.dstAccessMask = VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT;
   vkCmdPipelineBarrier2(commands, &dependency);
 
   pipeline_.bind(commands, &images_, {frame});
-  const std::uint32_t columns = (options_.extent_px.width + kTile - 1) / kTile;
-  vkCmdDispatch(commands, columns, tile_rows(options_, interleave_), options_.views);
+  const std::uint32_t columns = (extent_px.width + kTile - 1) / kTile;
+  vkCmdDispatch(commands, columns, tile_rows(extent_px.height, options_.views, interleave_), options_.views);
 
   if (fill_) {
     barrier.srcStageMask = barrier.dstStageMask = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
@@ -88,9 +89,9 @@ void StereoTracer::record(VkCommandBuffer commands, VkDeviceAddress frame) const
     barrier.dstAccessMask = VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT;
     vkCmdPipelineBarrier2(commands, &dependency);
     fill_->bind(commands, &images_, {frame});
-    vkCmdDispatch(commands, columns, (options_.extent_px.height + kTile - 1) / kTile, options_.views);
+    vkCmdDispatch(commands, columns, (extent_px.height + kTile - 1) / kTile, options_.views);
   }
-  if (edges_) edges_->record(commands, frame);
+  if (edges_) edges_->record(commands, frame, extent_px);
 
   barrier.srcStageMask = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
   barrier.srcAccessMask = VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT;

@@ -17,12 +17,13 @@
 namespace probewalk {
 
 struct TracerOptions {
-  VkExtent2D extent_px{};   // of each view
-  std::uint32_t views = 2;  // 1 .. kMaxViews
-  bool aov = false;         // also write class, probe and counts
-  std::uint32_t samples = 1;  // rays of a pixel at an edge: 1, 2 or 4
+  VkExtent2D extent_px{};              // of each view, at most
+  std::uint32_t views = 2;             // 1 .. kMaxViews
+  bool aov = false;                    // also write class, probe and counts
+  std::uint32_t samples = 1;           // rays of a pixel at an edge: 1, 2 or 4
   std::optional<Foveation> foveation;  // rays for several pixels towards the rim
-  TracerSetup setup;          // how rays are answered
+  bool masked = false;                 // hidden tiles have no rays: the FrameConstants name them (hidden_tiles.h)
+  TracerSetup setup;                   // how rays are answered
 };
 
 // Distance of a miss, metres.
@@ -32,9 +33,10 @@ class StereoTracer {
  public:
   StereoTracer(const Device& device, const TracerOptions& options);
 
-  // `frame` is the device address of a FrameConstants whose size and view count are the options'; its contents are read
-  // when the commands run. Leaves the images in VK_IMAGE_LAYOUT_GENERAL, visible to fragment shaders and copies.
-  void record(VkCommandBuffer commands, VkDeviceAddress frame) const;
+  // `frame` is the device address of a FrameConstants whose size is `extent_px` (within the options') and whose view
+  // count is the options'; its contents are read when the commands run. Of the images only that much is written, from
+  // the upper left corner. Leaves them in VK_IMAGE_LAYOUT_GENERAL, visible to fragment shaders and copies.
+  void record(VkCommandBuffer commands, VkDeviceAddress frame, VkExtent2D extent_px) const;
 
   const TracerOptions& options() const { return options_; }
   // One layer a view.
@@ -53,7 +55,7 @@ class StereoTracer {
   Image radiance_, distance_, aov_;
   StorageImageSet images_;
   Pipeline pipeline_;
-  std::optional<Pipeline> fill_;  // with foveation
+  std::optional<Pipeline> fill_;        // with foveation
   std::unique_ptr<EdgeSampler> edges_;  // with more than one sample
 };
 

@@ -12,6 +12,8 @@ layout(local_size_x = 8, local_size_y = 8) in;
 
 // Also fill in class and probe.
 layout(constant_id = 0) const bool kWithAov = false;
+// Hidden tiles are black already.
+layout(constant_id = 1) const bool kMasked = false;
 
 layout(binding = 0, rgba16f) uniform image2DArray radiance_image;
 layout(binding = 1, r32f) uniform image2DArray distance_image;
@@ -19,6 +21,8 @@ layout(binding = 2, rgba32ui) uniform uimage2DArray aov_image;
 
 layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer Frame { FrameConstants constants; };
 layout(push_constant) uniform Push { uvec2 frame_address; };
+
+#include "hidden_tiles.glsl"
 
 // What the ray shows that is nearest to a point of the picture. Only pixels that keep rays are read: others are being
 // written.
@@ -33,6 +37,7 @@ void main() {
   int view_index = int(gl_WorkGroupID.z);
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
   if (any(greaterThanEqual(pixel, frame.size_px))) return;
+  if (kMasked && is_hidden_tile(frame.hidden_tiles_address, view_index, pixel / 8, frame.size_px)) return;
   int rate = foveation_rate(frame.view[view_index], pixel, frame);
   if (rate == 1) return;
   ivec2 keeper = block_keeper(pixel, rate, frame.size_px);

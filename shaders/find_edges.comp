@@ -16,6 +16,8 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(constant_id = 0) const int kInterleave = 1;
 // Where a ray stands for several pixels none gets another.
 layout(constant_id = 1) const bool kFoveated = false;
+// Where the headset's optics hide a tile none gets one.
+layout(constant_id = 2) const bool kMasked = false;
 
 layout(binding = 0, rgba16f) readonly uniform image2DArray radiance_image;
 layout(binding = 1, r32f) readonly uniform image2DArray distance_image;
@@ -30,6 +32,8 @@ layout(push_constant) uniform Push {
   uvec2 unused;
   uvec2 list_address;
 };
+
+#include "hidden_tiles.glsl"
 
 // Inverse depth along a row or column of pixels that see one plane is affine; a bend beyond this share of the nearest
 // one's is another surface, or a crease.
@@ -68,6 +72,10 @@ void main() {
   FrameConstants constants = Frame(frame_address).constants;
   EdgeList list = EdgeList(list_address);
   int view_index = int(gl_WorkGroupID.z);
+  if (kMasked && is_hidden_tile(constants.hidden_tiles_address, view_index, ivec2(gl_WorkGroupID.xy),
+                                constants.size_px)) {
+    return;
+  }
   ivec2 corner = ivec2(gl_WorkGroupID.xy) * 8 - 1;
   int lane = int(gl_LocalInvocationIndex);
   if (lane == 0) tile_count = 0u;

@@ -13,12 +13,19 @@ layout(constant_id = 1) const int kInterleave = 1;
 // Tiles may have one ray for several pixels (foveation.h); fill_blocks.comp fills in the others.
 layout(constant_id = 2) const bool kFoveated = false;
 
+// Some tiles are hidden by the headset's optics: black, without rays.
+layout(constant_id = 3) const bool kMasked = false;
+
 layout(binding = 0, rgba16f) writeonly uniform image2DArray radiance_image;
 layout(binding = 1, r32f) writeonly uniform image2DArray distance_image;
 layout(binding = 2, rgba32ui) writeonly uniform uimage2DArray aov_image;
 
 layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer Frame { FrameConstants constants; };
 layout(push_constant) uniform Push { uvec2 frame_address; };
+
+#include "hidden_tiles.glsl"
+
+const float kHiddenDistance_m = 1e30;  // as of a miss
 
 void main() {
   Frame frame = Frame(frame_address);
@@ -29,6 +36,15 @@ void main() {
   ivec2 tile_px = ivec2(int(gl_WorkGroupID.x), row % rows) * 8;
   ivec2 size_px = frame.constants.size_px;
   ViewConstants view = frame.constants.view[view_index];
+  if (kMasked && tile_px.y < size_px.y &&
+      is_hidden_tile(frame.constants.hidden_tiles_address, view_index, tile_px / 8, size_px)) {
+    ivec3 texel = ivec3(tile_px + ivec2(gl_LocalInvocationID.xy), view_index);
+    if (texel.x >= size_px.x || texel.y >= size_px.y) return;
+    imageStore(radiance_image, texel, vec4(0.0, 0.0, 0.0, 1.0));
+    imageStore(distance_image, texel, vec4(kHiddenDistance_m));
+    if (kWithAov) imageStore(aov_image, texel, uvec4(uint(kClassMiss), 0xffffffffu, 0u, 0u));
+    return;
+  }
   // A coarse tile's rays are its first lanes', so that the others' parts of the group end at once.
   int rate = kFoveated ? foveation_rate(view, tile_px, frame.constants) : 1;
   int side = kFoveationTile / rate, lane = int(gl_LocalInvocationIndex);

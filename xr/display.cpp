@@ -11,6 +11,7 @@
 #include "xr/offscreen_source.h"
 #include "xr/openxr_instance.h"
 #include "xr/openxr_source.h"
+#include "xr/spectator.h"
 #include "xr/window.h"
 #include "xr/window_source.h"
 
@@ -41,15 +42,17 @@ void open_mirrored(Display& display, const DisplayOptions& options, const FloorM
   const ShownEyes shown = options.window_eyes.value_or(ShownEyes::kLeft);
   if (shown != ShownEyes::kNone) {
     try {
-      const VkExtent2D size =
-          window_size({options.eye_size.width > 0 ? options.eye_size : kMirrorSize, shown, options.eyes});
+      const VkExtent2D size = shown == ShownEyes::kSpectator
+                                  ? kSpectatorSize
+                                  : window_size({options.eye_size.width > 0 ? options.eye_size : kMirrorSize, shown,
+                                                 options.eyes, nullptr});
       display.window = std::make_unique<Window>("Probewalk: mirror", size);
       display.device = std::make_unique<Device>(
           with_window(display.runtime->device_hooks(), display.window->device_hooks()), options.device);
       display.source = std::make_unique<OpenXrSource>(*display.runtime, *display.device, floor, start, headset);
       const FrameSource& source = *display.source;
       display.mirror = std::make_unique<Mirror>(*display.window, *display.device, source.view_extent(),
-                                                source.view_count(), source.color_format(), shown);
+                                                source.view_count(), source.color_format(), shown, options.overlay);
       return;
     } catch (const NoDevice& error) {
       spdlog::info("no mirror: {}", error.what());
@@ -64,8 +67,9 @@ void open_mirrored(Display& display, const DisplayOptions& options, const FloorM
 
 Display open_window(const DisplayOptions& options, const FloorMap& floor, const Pose& start) {
   ShownEyes shown = options.window_eyes.value_or(ShownEyes::kBoth);
-  if (shown == ShownEyes::kNone) shown = ShownEyes::kBoth;  // without a mirror, not without a picture
-  const WindowOptions window{eye_size_or_default(options), shown, options.eyes};
+  // A headset's mirror, or none: without a headset the window is what there is to see.
+  if (shown == ShownEyes::kNone || shown == ShownEyes::kSpectator) shown = ShownEyes::kBoth;
+  const WindowOptions window{eye_size_or_default(options), shown, options.eyes, options.overlay};
   Display display;
   display.window = std::make_unique<Window>("Probewalk", window_size(window));
   display.device = std::make_unique<Device>(display.window->device_hooks(), options.device);

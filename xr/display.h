@@ -16,6 +16,7 @@ namespace probewalk {
 
 class Mirror;
 class OpenXrInstance;
+class OverlayBoard;
 class Window;
 
 enum class DisplayChoice { kAuto, kHeadset, kWindow, kOffscreen };
@@ -25,6 +26,7 @@ struct DisplayOptions {
   VkExtent2D eye_size{0, 0};  // 0 = the display's own choice
   // Of the window, and of the mirror beside a headset. Empty = both in a window of its own, the left one in a mirror.
   std::optional<ShownEyes> window_eyes;
+  OverlayBoard* overlay = nullptr;  // of the window or the mirror; outlives every display
   bool seated = false;
   EyeGeometry eyes;  // window and offscreen; a headset has its own
   DeviceOptions device;
@@ -37,8 +39,8 @@ struct Display {
   std::unique_ptr<Device> device;
   std::unique_ptr<FrameSource> source;
   std::unique_ptr<Mirror> mirror;  // headset with a desktop, unless told not to
-  std::string runtime_name;  // of the OpenXR runtime and headset; empty where none takes part
-  std::string reason;        // why this one: a sentence for the log
+  std::string runtime_name;        // of the OpenXR runtime and headset; empty where none takes part
+  std::string reason;              // why this one: a sentence for the log
 
   Display();
   Display(Display&&) noexcept;

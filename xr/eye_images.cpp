@@ -11,13 +11,13 @@ EyeImages::EyeImages(const Device& device, VkExtent2D extent, std::uint32_t view
   for (std::uint32_t i = 0; i < kCount; ++i) images_.emplace_back(device, options);
 }
 
-FrameTarget EyeImages::next() {
+FrameTarget EyeImages::next(VkExtent2D drawn) {
   current_ = (current_ + 1) % kCount;
   const Image& image = images_[current_];
   FrameTarget target;
   target.image = image.handle();
   target.format = kFormat;
-  target.extent = image.options().extent_px;
+  target.extent = drawn;
   target.layers = image.options().layers;
   target.initial_layout = VK_IMAGE_LAYOUT_UNDEFINED;
   target.final_layout = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;

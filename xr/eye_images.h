@@ -18,8 +18,8 @@ class EyeImages {
 
   EyeImages(const Device& device, VkExtent2D extent, std::uint32_t views);
 
-  // The next image of the ring. It is to be left ready to be copied from.
-  FrameTarget next();
+  // The next image of the ring, of which `drawn` is drawn. It is to be left ready to be copied from.
+  FrameTarget next(VkExtent2D drawn);
   // Index in the ring of the image handed out last.
   std::uint32_t current() const { return current_; }
 

@@ -13,6 +13,7 @@
 #include "render/depth_range.h"
 #include "render/device.h"
 #include "render/frame_target.h"
+#include "render/hidden_tiles.h"
 #include "xr/latency/frame_record.h"
 
 namespace probewalk {
@@ -77,8 +78,9 @@ class FrameSource {
   virtual VkFormat depth_format() const { return VK_FORMAT_UNDEFINED; }
   // Between which planes that depth runs; told before the first frame. Nothing to a display that takes none.
   virtual void set_depth_range(const DepthRange&) {}
-  // An image of 0 = nothing to draw into (the display is gone; the next poll says so).
-  virtual FrameTarget acquire() = 0;
+  // A target of which `drawn` is drawn and shown: within view_extent(), and of its shape. An image of 0 = nothing to
+  // draw into (the display is gone; the next poll says so).
+  virtual FrameTarget acquire(VkExtent2D drawn) = 0;
   // Ends the frame with the views that were rendered (empty = nothing was).
   virtual void end(const FrameTiming& timing, const std::vector<ViewPose>& rendered_views) = 0;
 
@@ -92,8 +94,14 @@ class FrameSource {
   // One for each frame whose time has come since the last call; asks the runtime. Always empty where a display has no
   // later answer.
   virtual std::vector<PoseError> take_pose_errors() { return {}; }
+  // Whether the display may hide parts of its views; and the meshes that do, one a view, when they are new or have
+  // changed since the last call.
+  virtual bool hides_parts() const { return false; }
+  virtual std::optional<std::vector<HiddenMesh>> take_hidden_meshes() { return {}; }
   // Whether the user asked for a picture of the next frame.
   virtual bool take_screenshot_request() { return false; }
+  // Whether the user asked for the look-ups instead of the picture, or for the picture again.
+  virtual bool take_lookups_request() { return false; }
   // Leaves in order, before destruction.
   virtual void finish() {}
 };

@@ -10,16 +10,20 @@
 namespace probewalk {
 
 Mirror::Mirror(Window& window, const Device& device, VkExtent2D eye, std::uint32_t views, VkFormat format,
-               ShownEyes shown)
+               ShownEyes shown, const OverlayBoard* overlay)
     : window_(window),
       device_(device),
       eye_(eye),
       shown_(shown),
       pacer_(static_cast<std::int64_t>(std::llround(1e9 / window.refresh_hz()))),
       // SAMPLED: our images have a view, and a view wants a use that is not copying alone.
-      copy_(device, {format, eye, views, VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT |
-                                             VK_IMAGE_USAGE_SAMPLED_BIT}),
-      swapchain_(device, window.create_surface(device.instance()), 1, WindowSwapchain::Present::kAfterTheCopy) {
+      copy_(shown == ShownEyes::kSpectator
+                ? Image()
+                : Image(device, {format, eye, views,
+                                 VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT |
+                                     VK_IMAGE_USAGE_SAMPLED_BIT})),
+      swapchain_(device, window.create_surface(device.instance()), 1, WindowSwapchain::Sharing::kBesideHeadset,
+                 overlay) {
   VkCommandPoolCreateInfo pool{VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO};
   pool.queueFamilyIndex = device.queue_family();
   check(vkCreateCommandPool(device.handle(), &pool, nullptr, &pool_), "vkCreateCommandPool");
@@ -38,8 +42,10 @@ Mirror::~Mirror() {
     const std::scoped_lock lock(mutex_);
     stop_ = true;
   }
-  changed_.notify_one();
+  changed_.notify_all();
   thread_.join();
+  spdlog::info("mirror: {} pictures, presenting one held the device's queue for {:.2f} ms at most",
+               swapchain_.presented(), static_cast<double>(swapchain_.longest_lock_ns()) * 1e-6);
   // Not check: a lost device must not throw here.
   vkDeviceWaitIdle(device_.handle());
   vkDestroyFence(device_.handle(), copied_, nullptr);
@@ -47,6 +53,16 @@ Mirror::~Mirror() {
 }
 
 void Mirror::offer(const FrameTarget& target, FrameRecord& record) {
+  offer_drawn(record, [&] {
+    copy(target);
+    FrameTarget copied = target;
+    copied.image = copy_.handle();
+    copied.final_layout = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
+    return std::optional(copied);
+  });
+}
+
+void Mirror::offer_drawn(FrameRecord& record, const std::function<std::optional<FrameTarget>()>& draw) {
   const std::int64_t now = now_ns();
   const MirrorPacer::Turn turn = pacer_.next(now, record.predicted_display, record.period);
   if (is_lost_ || turn == MirrorPacer::Turn::kNotDue) return;
@@ -54,19 +70,22 @@ void Mirror::offer(const FrameTarget& target, FrameRecord& record) {
   if (window.width == 0 || window.height == 0) return;
   record.mirror.begin = now;
   if (turn == MirrorPacer::Turn::kTaken && !busy_) {
-    copy(target);
-    Picture picture{target, window};
-    picture.eyes.image = copy_.handle();
-    picture.eyes.final_layout = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
-    busy_ = true;
-    {
-      const std::scoped_lock lock(mutex_);
-      next_ = picture;
+    if (const auto eyes = draw()) {
+      busy_ = true;
+      {
+        const std::scoped_lock lock(mutex_);
+        next_ = Picture{*eyes, window};
+      }
+      changed_.notify_all();
+      record.mirror_presented = true;
     }
-    changed_.notify_one();
-    record.mirror_presented = true;
   }
   record.mirror.end = now_ns();
+}
+
+void Mirror::settle() {
+  std::unique_lock lock(mutex_);
+  changed_.wait(lock, [this] { return !busy_; });
 }
 
 void Mirror::copy(const FrameTarget& target) {
@@ -81,7 +100,7 @@ void Mirror::copy(const FrameTarget& target) {
   const std::uint32_t first = shown_ == ShownEyes::kRight && target.layers > 1 ? 1 : 0;
   const std::uint32_t count = shown_ == ShownEyes::kBoth ? target.layers : 1;
   region.srcSubresource = region.dstSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, first, count};
-  region.extent = {eye_.width, eye_.height, 1};
+  region.extent = {target.extent.width, target.extent.height, 1};
   vkCmdCopyImage(commands_, target.image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, copy_.handle(),
                  VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region);
   transition(commands_, copy_.handle(), VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
@@ -107,14 +126,22 @@ void Mirror::show_pictures() {
       next_.reset();
     }
     try {
-      check(vkWaitForFences(device_.handle(), 1, &copied_, VK_TRUE, UINT64_MAX), "vkWaitForFences");
-      is_lost_ = !swapchain_.present(0, picture.eyes, window_layout(shown_, eye_, picture.window), picture.window);
+      // A copy of the eyes; a picture of the mirror's own is waited for where it is copied to the window.
+      if (shown_ != ShownEyes::kSpectator) {
+        check(vkWaitForFences(device_.handle(), 1, &copied_, VK_TRUE, UINT64_MAX), "vkWaitForFences");
+      }
+      const VkExtent2D shape = shown_ == ShownEyes::kSpectator ? picture.eyes.extent : eye_;
+      is_lost_ = !swapchain_.present(0, picture.eyes, window_layout(shown_, shape, picture.window), picture.window);
       if (is_lost_) spdlog::warn("the mirror's window is gone; the headset goes on");
     } catch (const Error& error) {
       spdlog::warn("the mirror ends: {}", error.what());
       is_lost_ = true;
     }
-    busy_ = false;
+    {
+      const std::scoped_lock lock(mutex_);
+      busy_ = false;
+    }
+    changed_.notify_all();
   }
 }
 

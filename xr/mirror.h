@@ -5,6 +5,7 @@
 #include <atomic>
 #include <condition_variable>
 #include <cstdint>
+#include <functional>
 #include <mutex>
 #include <optional>
 #include <thread>
@@ -24,8 +25,9 @@ namespace probewalk {
 class Mirror {
  public:
   // `window` and `device` (made with the window's hooks) outlive the mirror. `eye` and `views` are those of the
-  // headset.
-  Mirror(Window& window, const Device& device, VkExtent2D eye, std::uint32_t views, VkFormat format, ShownEyes shown);
+  // headset. `overlay`, if any, outlives it, too.
+  Mirror(Window& window, const Device& device, VkExtent2D eye, std::uint32_t views, VkFormat format, ShownEyes shown,
+         const OverlayBoard* overlay);
   ~Mirror();
   Mirror(const Mirror&) = delete;
   Mirror& operator=(const Mirror&) = delete;
@@ -36,6 +38,12 @@ class Mirror {
   // mirror: nothing when no picture was due, not presented when the headset was late (mirror_pacer.h) or the mirror
   // still busy with the last one.
   void offer(const FrameTarget& target, FrameRecord& record);
+  // The same for a picture of the mirror's own, which `draw` submits only when one is due; it is left alone until the
+  // next call of `draw`. Nothing: not now.
+  void offer_drawn(FrameRecord& record, const std::function<std::optional<FrameTarget>()>& draw);
+  // Waits until the last picture handed over is no longer read.
+  void settle();
+  ShownEyes shown() const { return shown_; }
 
  private:
   struct Picture {
@@ -50,7 +58,7 @@ class Mirror {
   const VkExtent2D eye_;
   const ShownEyes shown_;
   MirrorPacer pacer_;
-  Image copy_;
+  Image copy_;  // of the eyes; none where they are not shown
   VkCommandPool pool_ = VK_NULL_HANDLE;
   VkCommandBuffer commands_ = VK_NULL_HANDLE;
   VkFence copied_ = VK_NULL_HANDLE;
@@ -58,7 +66,7 @@ class Mirror {
 
   std::mutex mutex_;
   std::condition_variable changed_;
-  std::optional<Picture> next_;   // handed over, not shown yet
+  std::optional<Picture> next_;  // handed over, not shown yet
   std::atomic<bool> busy_ = false;
   std::atomic<bool> is_lost_ = false;  // window or surface gone: nothing is mirrored any more
   bool stop_ = false;

@@ -34,7 +34,7 @@ class OffscreenSource final : public FrameSource {
   VkExtent2D view_extent() const override { return options_.eye_size; }
   std::uint32_t view_count() const override { return 2; }
   VkFormat color_format() const override { return EyeImages::kFormat; }
-  FrameTarget acquire() override { return images_.next(); }
+  FrameTarget acquire(VkExtent2D drawn) override { return images_.next(drawn); }
   void end(const FrameTiming&, const std::vector<ViewPose>&) override {}
 
  private:

@@ -20,6 +20,7 @@ constexpr std::array kExtensions{
     OpenXrExtension{XR_EXT_LOCAL_FLOOR_EXTENSION_NAME, false, "the floor is that of the stage, or guessed"},
     OpenXrExtension{XR_KHR_COMPOSITION_LAYER_DEPTH_EXTENSION_NAME, false,
                     "frames are reprojected for turns of the head alone, not for its steps"},
+    OpenXrExtension{XR_KHR_VISIBILITY_MASK_EXTENSION_NAME, false, "what the lenses hide is traced for nothing"},
 };
 
 constexpr std::int64_t kSecond_ns = 1'000'000'000;
@@ -56,7 +57,9 @@ void check_xr(XrResult result, const char* call) {
   if (XR_FAILED(result)) throw NoDevice(fmt::format("OpenXR: {} failed with {}", call, xr_result_name(result)));
 }
 
-std::span<const OpenXrExtension> wanted_openxr_extensions() { return kExtensions; }
+std::span<const OpenXrExtension> wanted_openxr_extensions() {
+  return kExtensions;
+}
 
 OpenXrInstance::OpenXrInstance() {
   // Without a runtime the loader writes lines of its own; ours says the same once. Who sets the variable gets them.

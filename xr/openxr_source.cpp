@@ -14,6 +14,7 @@
 #include "xr/latency/clock.h"
 #include "xr/latency/stopwatch.h"
 #include "xr/openxr_enumerate.h"
+#include "xr/openxr_visibility.h"
 #include "xr/path.h"
 
 namespace probewalk {
@@ -211,6 +212,9 @@ SourceState OpenXrSource::poll() {
         }
         break;
       }
+      case XR_TYPE_EVENT_DATA_VISIBILITY_MASK_CHANGED_KHR:
+        masks_are_new_ = true;
+        break;
       default:
         break;
     }
@@ -358,13 +362,14 @@ bool OpenXrSource::acquire(OpenXrSwapchain& swapchain) {
   return swapchain.image() != VK_NULL_HANDLE;
 }
 
-FrameTarget OpenXrSource::acquire() {
+FrameTarget OpenXrSource::acquire(VkExtent2D drawn) {
   FrameTarget target;
+  drawn_ = drawn;
   if (!acquire(*color_)) return target;
   if (depth_ && !acquire(*depth_)) return target;
   target.image = color_->image();
   target.format = format_;
-  target.extent = extent_;
+  target.extent = drawn;
   target.layers = view_count();
   target.initial_layout = VK_IMAGE_LAYOUT_UNDEFINED;
   target.final_layout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
@@ -391,11 +396,11 @@ void OpenXrSource::end(const FrameTiming& timing, const std::vector<ViewPose>& r
     view.pose = frame_.views[i].pose;
     view.fov = {rendered_views[i].fov_left_rad, rendered_views[i].fov_right_rad, rendered_views[i].fov_up_rad,
                 rendered_views[i].fov_down_rad};
-    view.subImage = color_->layer(i);
+    view.subImage = color_->layer(i, drawn_);
     if (depth_) {
       // Reversed (view_depth.h): a depth of 0 lies at the far plane, 1 at the near one.
       XrCompositionLayerDepthInfoKHR& depth = layer_depths[i];
-      depth.subImage = depth_->layer(i);
+      depth.subImage = depth_->layer(i, drawn_);
       depth.minDepth = 0.0f;
       depth.maxDepth = 1.0f;
       depth.nearZ = depth_range_.far_m;
@@ -445,6 +450,15 @@ std::vector<PoseError> OpenXrSource::take_pose_errors() {
                       glm::distance(head.position_m, pose.position_m) * 1e3, glm::degrees(angle_rad)});
   }
   return errors;
+}
+
+std::optional<std::vector<HiddenMesh>> OpenXrSource::take_hidden_meshes() {
+  if (!hides_parts() || !masks_are_new_ || state_.source_state() == SourceState::kLost) return {};
+  masks_are_new_ = false;
+  XrResult result = XR_SUCCESS;
+  auto meshes = read_hidden_meshes(instance_.handle(), session_.get(), kStereo, view_count(), result);
+  if (!alive(result, "xrGetVisibilityMaskKHR")) return {};
+  return meshes;
 }
 
 void OpenXrSource::finish() {

@@ -42,7 +42,7 @@ class OpenXrSource final : public FrameSource {
   VkFormat color_format() const override { return format_; }
   VkFormat depth_format() const override { return depth_format_; }
   void set_depth_range(const DepthRange& range) override { depth_range_ = range; }
-  FrameTarget acquire() override;
+  FrameTarget acquire(VkExtent2D drawn) override;
   // The layer states the poses of the last locate that had valid ones; of `rendered_views` it takes the fields of view,
   // which differ from the located ones only where a path is replayed.
   void end(const FrameTiming& timing, const std::vector<ViewPose>& rendered_views) override;
@@ -50,6 +50,8 @@ class OpenXrSource final : public FrameSource {
   bool head_is_real() const override { return true; }
   std::optional<FrameOutcome> outcome() const override { return frame_.outcome; }
   std::vector<PoseError> take_pose_errors() override;
+  bool hides_parts() const override { return instance_.has(XR_KHR_VISIBILITY_MASK_EXTENSION_NAME); }
+  std::optional<std::vector<HiddenMesh>> take_hidden_meshes() override;
   void finish() override;
 
   bool was_focused() const { return state_.was_ever_focused(); }
@@ -104,6 +106,7 @@ class OpenXrSource final : public FrameSource {
   std::unique_ptr<OpenXrSwapchain> color_;
   std::unique_ptr<OpenXrSwapchain> depth_;  // null: the runtime takes no depth
   VkExtent2D extent_{};
+  VkExtent2D drawn_{};  // of the image acquired last
   VkFormat format_ = VK_FORMAT_UNDEFINED;
   VkFormat depth_format_ = VK_FORMAT_UNDEFINED;
   DepthRange depth_range_;
@@ -113,6 +116,7 @@ class OpenXrSource final : public FrameSource {
   std::optional<Head> head_;  // of the last valid views, whichever frame's
   XrTime space_changes_at_ = 0;
   bool warned_of_time_ = false;
+  bool masks_are_new_ = true;
   std::deque<ShownPose> shown_;
 
   Rig rig_;

@@ -9,7 +9,7 @@ constexpr XrDuration kImageTimeout_ns = 2'000'000'000;
 
 }  // namespace
 
-OpenXrSwapchain::OpenXrSwapchain(XrSession session, const OpenXrSwapchainOptions& options) : extent_(options.extent) {
+OpenXrSwapchain::OpenXrSwapchain(XrSession session, const OpenXrSwapchainOptions& options) {
   XrSwapchainCreateInfo info{XR_TYPE_SWAPCHAIN_CREATE_INFO};
   info.usageFlags = options.usage;
   info.format = options.format;
@@ -52,10 +52,10 @@ OpenXrOutcome OpenXrSwapchain::release() {
   return {xrReleaseSwapchainImage(handle_.get(), &release), "xrReleaseSwapchainImage"};
 }
 
-XrSwapchainSubImage OpenXrSwapchain::layer(std::uint32_t view) const {
+XrSwapchainSubImage OpenXrSwapchain::layer(std::uint32_t view, VkExtent2D drawn) const {
   XrSwapchainSubImage image{};
   image.swapchain = handle_.get();
-  image.imageRect.extent = {static_cast<std::int32_t>(extent_.width), static_cast<std::int32_t>(extent_.height)};
+  image.imageRect.extent = {static_cast<std::int32_t>(drawn.width), static_cast<std::int32_t>(drawn.height)};
   image.imageArrayIndex = view;
   return image;
 }

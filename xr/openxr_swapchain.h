@@ -35,12 +35,11 @@ class OpenXrSwapchain {
   // The image held; VK_NULL_HANDLE when none is.
   VkImage image() const { return held_; }
 
-  // All of a layer, as the layers of a frame state it.
-  XrSwapchainSubImage layer(std::uint32_t view) const;
+  // What is drawn of a layer, from its upper left corner, as the layers of a frame state it.
+  XrSwapchainSubImage layer(std::uint32_t view, VkExtent2D drawn) const;
 
  private:
   XrOwned<XrSwapchain, xrDestroySwapchain> handle_;
-  VkExtent2D extent_{};
   std::vector<VkImage> images_;
   VkImage held_ = VK_NULL_HANDLE;
 };

@@ -70,7 +70,10 @@ RunInfo run_info(const WalkOptions& options, const Display& display) {
 class Walk {
  public:
   Walk(const WalkOptions& options, const Pack& pack, Progress& progress)
-      : options_(options), pack_(pack), progress_(progress) {}
+      : options_(options), pack_(pack), progress_(progress), display_options_(options.display) {
+    display_options_.overlay = &books_.overlay;
+    books_.overlay.show(options.overlay);
+  }
 
   WalkResult run();
 
@@ -88,6 +91,7 @@ class Walk {
   const WalkOptions& options_;
   const Pack& pack_;
   Progress& progress_;
+  DisplayOptions display_options_;
   WalkBooks books_;
   std::unique_ptr<HeadsetWatch> watch_;
   std::unique_ptr<Display> display_;
@@ -131,7 +135,7 @@ WalkResult Walk::run() {
 void Walk::begin(std::optional<Path> path) {
   const Manifest& manifest = pack_.manifest();
   const DisplayOpener open = options_.open_display ? options_.open_display : DisplayOpener(open_display);
-  display_ = std::make_unique<Display>(open(options_.display, manifest.floor, manifest.start));
+  display_ = std::make_unique<Display>(open(display_options_, manifest.floor, manifest.start));
   note_display();
   const bool offscreen = display_->source->kind() == "offscreen";
   books_.frames = frame_limit(options_, offscreen, path);
@@ -175,7 +179,7 @@ bool Walk::go_on_without_headset() {
   progress_.note("the headset is lost; going on without, until it is there again");
   leave_display("the OpenXR runtime went away");
   try {
-    display_ = std::make_unique<Display>(open_without_headset(options_.display, pack_.manifest().floor, here()));
+    display_ = std::make_unique<Display>(open_without_headset(display_options_, pack_.manifest().floor, here()));
   } catch (const NoDevice& error) {
     spdlog::error("there is no other display either: {}", error.what());
     return false;
@@ -192,11 +196,11 @@ void Walk::go_back_to_headset() {
   leave_display("the headset is there again");
   try {
     display_ =
-        std::make_unique<Display>(open_headset(options_.display, pack_.manifest().floor, here(), std::move(runtime)));
+        std::make_unique<Display>(open_headset(display_options_, pack_.manifest().floor, here(), std::move(runtime)));
   } catch (const NoDevice& error) {
     // Gone once more before it could be used.
     spdlog::warn("the headset answered but cannot be used: {}", error.what());
-    display_ = std::make_unique<Display>(open_without_headset(options_.display, pack_.manifest().floor, here()));
+    display_ = std::make_unique<Display>(open_without_headset(display_options_, pack_.manifest().floor, here()));
     watch_ = std::make_unique<HeadsetWatch>();
   }
   books_.info.display_changes.back().to = display_->source->kind();

@@ -8,6 +8,7 @@
 #include "xr/frame_source.h"
 #include "xr/latency/ledger.h"
 #include "xr/latency/run_info.h"
+#include "xr/overlay/overlay_board.h"
 #include "xr/path.h"
 #include "xr/walk_view.h"
 
@@ -19,6 +20,8 @@ struct WalkBooks {
   Ledger ledger;
   RunInfo info;
   std::unique_ptr<PathWriter> recorder;
+  OverlayBoard overlay;
+  bool shows_lookups = false;
 
   std::uint64_t frame = 0;  // index of the frame under way
   std::uint64_t pictures = 0;

@@ -25,6 +25,7 @@ constexpr auto kIdleSleep = std::chrono::milliseconds(5);
 WalkLeg::WalkLeg(const WalkOptions& options, const Pack& pack, const Display& display, WalkBooks& books,
                  const HeadsetWatch* watch, Progress& progress)
     : options_(options),
+      manifest_(pack.manifest()),
       display_(display),
       source_(*display.source),
       books_(books),
@@ -43,19 +44,29 @@ WalkLeg::WalkLeg(const WalkOptions& options, const Pack& pack, const Display& di
                             .views = source_.view_count(),
                             .samples = options.samples,
                             .foveation = foveation_of(options.foveation),
+                            .masked = source_.hides_parts(),
                             .setup = {options.choice, baselines_.get()}},
                  .target_format = source_.color_format(),
                  .depth_format = source_.depth_format()}),
+      eyes_(source_.view_extent(), options.eye_scale_adapts.value_or(source_.kind() == "headset"), options.eye_scale),
       book_(books.ledger) {
   settings_.trace = default_dials(pack.manifest().radiance_scale);
   settings_.exposure = exposure_from_ev(static_cast<float>(options.exposure_ev.value_or(pack.manifest().exposure_ev)));
   settings_.depth = depth_range_of(pack.manifest().bounds);
   source_.set_depth_range(settings_.depth);
   pipelines_built_ = display_.device->pipelines_built();
+  if (display.mirror && display.mirror->shown() == ShownEyes::kSpectator) {
+    spectator_ = std::make_unique<Spectator>(*display.device, renderer_.tracer().options(), source_.color_format());
+  }
   if (baselines_) {
     progress.note(fmt::format("maps for {}: {:.1f} MiB on the device", name_of(options.choice),
                               static_cast<double>(baselines_->device_bytes()) / (1 << 20)));
   }
+}
+
+WalkLeg::~WalkLeg() {
+  if (spectator_) display_.mirror->settle();  // it may still be at the spectator's last picture
+  book_.close();
 }
 
 LegEnd WalkLeg::run() {
@@ -66,6 +77,8 @@ LegEnd WalkLeg::run() {
       const WindowInput input = display_.mirror->poll();
       if (input.closed) return LegEnd::kClosed;
       screenshot_ = screenshot_ || input.screenshot;
+      if (input.overlay) books_.overlay.toggle();
+      books_.shows_lookups = books_.shows_lookups != input.lookups;
     }
     if (books_.frames && books_.frame >= *books_.frames) return LegEnd::kDone;
     switch (source_.poll()) {
@@ -99,6 +112,7 @@ bool WalkLeg::frame() {
   record.begin = timed([&] { source_.begin(timing); });
   record.predicted_display = timing.predicted_display_ns;
   record.period = timing.period_ns;
+  period_ns_ = timing.period_ns;
   record.should_render = timing.should_render;
   record.discarded = timing.discarded;
   const bool over = is_over(timing);
@@ -109,6 +123,11 @@ bool WalkLeg::frame() {
   // A frame that was begun is ended, whatever became of it.
   record.end = timed([&] { source_.end(timing, views); });
   if (over) return false;
+  // The frame is the runtime's by now: what is drawn for others holds it up no more.
+  if (spectator_ && drawn != 0) {
+    spectator_->follow(*books_.head, timing.predicted_display_ns);
+    spectator_->show(*display_.mirror, renderer_, settings_, record);
+  }
   if (drawn != 0 && books_.left_ns) note_arrival();
   bool shown = drawn != 0;
   if (const auto outcome = source_.outcome()) {
@@ -123,6 +142,7 @@ bool WalkLeg::frame() {
   const std::uint32_t built = display_.device->pipelines_built();
   record.pipelines_built = built - std::exchange(pipelines_built_, built);
   book_.add(record, drawn);
+  if (books_.overlay.is_shown()) note_for_overlay(record);
   // Between the frames: asked for time stamps, some drivers (lavapipe) wait for the frames in flight, and a runtime's
   // answers take their time too.
   book_.add_ledger_time(timed([&] { take_late_answers(); }));
@@ -148,17 +168,20 @@ std::vector<ViewPose> WalkLeg::draw(const FrameTiming& timing, FrameRecord& reco
   }
   FrameTarget target;
   record.record = timed([&] {
-    const Interval acquired = timed([&] { target = source_.acquire(); });
+    const Interval acquired = timed([&] { target = source_.acquire(eyes_.extent()); });
     record.blocked_ns += acquired.end - acquired.begin;
     if (target.image == VK_NULL_HANDLE) return;
+    books_.shows_lookups = books_.shows_lookups != source_.take_lookups_request();
+    renderer_.show_lookups(books_.shows_lookups);
     renderer_.record(target);
     record.blocked_ns += renderer_.blocked_ns();
   });
   if (target.image == VK_NULL_HANDLE) return {};
+  if (auto meshes = source_.take_hidden_meshes()) renderer_.hide(std::move(*meshes));
   // Where rooms reach the device through the queue, a byte budget spreads them over frames: those before the last are
   // drawn for nothing.
   while (settle_ && !rooms_.all_shown()) {
-    write(views);
+    write(views, target.extent);
     renderer_.submit();
     renderer_.record(target);
   }
@@ -168,11 +191,13 @@ std::vector<ViewPose> WalkLeg::draw(const FrameTiming& timing, FrameRecord& reco
     record.early_pose = late.empty();
     if (!late.empty()) views = std::move(late);
   });
-  write(views);
+  write(views, target.extent);
   record.submit = timed([&] { drawn = renderer_.submit(); });
+  record.eye_scale = eyes_.scale();
+  eyes_.drawn(drawn);
   books_.head = head;
   save_pictures(target);
-  if (display_.mirror) display_.mirror->offer(target, record);
+  if (display_.mirror && !spectator_) display_.mirror->offer(target, record);
   if (books_.recorder) {
     books_.recorder->add({static_cast<double>(timing.predicted_display_ns - *books_.first_display_ns) * 1e-9,
                           head.position_m, head.orientation, views});
@@ -180,12 +205,12 @@ std::vector<ViewPose> WalkLeg::draw(const FrameTiming& timing, FrameRecord& reco
   return views;
 }
 
-void WalkLeg::write(const std::vector<ViewPose>& views) {
+void WalkLeg::write(const std::vector<ViewPose>& views, VkExtent2D extent) {
   std::vector<ViewConstants> constants;
   for (const ViewPose& view : views) {
     constants.push_back(view_constants(view.position_m, view.orientation,
                                        {view.fov_left_rad, view.fov_right_rad, view.fov_up_rad, view.fov_down_rad},
-                                       static_cast<int>(source_.view_extent().width)));
+                                       static_cast<int>(extent.width)));
   }
   // A replay is shown as it was recorded: nobody's head is in a wall.
   const float moved = books_.view.is_replay() ? 0.0f : std::max(source_.fade(), wall_fade_.darkness());
@@ -202,6 +227,26 @@ void WalkLeg::save_pictures(const FrameTarget& target) {
   }
 }
 
+void WalkLeg::note_for_overlay(const FrameRecord& record) {
+  OverlayStatus status;
+  status.display = source_.kind();
+  status.method = name_of(options_.choice);
+  status.credits = manifest_.credits;
+  const bool in_room = record.room >= 0 && static_cast<std::size_t>(record.room) < manifest_.rooms.size();
+  status.room = in_room ? manifest_.rooms[static_cast<std::size_t>(record.room)].name : "none";
+  status.level_shown = record.level_shown;
+  status.level_wanted = record.level_wanted;
+  status.queue_depth = record.queue_depth;
+  status.bytes_in_flight = rooms_.bytes_in_flight();
+  status.device_bytes = record.device_bytes;
+  status.budget_bytes = rooms_.budget_bytes() == kUnlimitedBudget ? 0 : rooms_.budget_bytes();
+  status.troubled_levels = rooms_.troubled_levels();
+  status.last_error = rooms_.last_error();
+  status.eye_scale = static_cast<float>(record.eye_scale);
+  status.shows_lookups = books_.shows_lookups;
+  books_.overlay.note(books_.ledger, std::move(status));
+}
+
 // The first frame on another display: the wearer, or whoever reads the report, wants to know how long it took.
 void WalkLeg::note_arrival() {
   DisplayChange& change = books_.info.display_changes.back();
@@ -213,7 +258,10 @@ void WalkLeg::note_arrival() {
 }
 
 void WalkLeg::take_late_answers() {
-  while (const auto times = renderer_.take_times()) book_.add(*times);
+  while (const auto times = renderer_.take_times()) {
+    book_.add(*times);
+    eyes_.finished(*times, period_ns_);
+  }
   for (const PoseError& error : source_.take_pose_errors()) book_.add(error);
 }
 

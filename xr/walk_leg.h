@@ -10,9 +10,11 @@
 #include "render/baseline_store.h"
 #include "render/frame_renderer.h"
 #include "xr/display.h"
+#include "xr/eye_resolution.h"
 #include "xr/frame_book.h"
 #include "xr/headset_watch.h"
 #include "xr/locomotion.h"
+#include "xr/spectator.h"
 #include "xr/walk.h"
 #include "xr/walk_books.h"
 #include "xr/walk_rooms.h"
@@ -33,7 +35,7 @@ class WalkLeg {
   WalkLeg(const WalkOptions& options, const Pack& pack, const Display& display, WalkBooks& books,
           const HeadsetWatch* watch, Progress& progress);
   // Frames whose device times are still missing reach the ledger without them.
-  ~WalkLeg() { book_.close(); }
+  ~WalkLeg();
   WalkLeg(const WalkLeg&) = delete;
   WalkLeg& operator=(const WalkLeg&) = delete;
 
@@ -46,13 +48,15 @@ class WalkLeg {
   bool frame();
   // Draws into the source's next image; the views that were drawn, and the frame's number with the renderer.
   std::vector<ViewPose> draw(const FrameTiming& timing, FrameRecord& record, std::uint64_t& drawn);
-  void write(const std::vector<ViewPose>& views);
+  void write(const std::vector<ViewPose>& views, VkExtent2D extent);
   void save_pictures(const FrameTarget& target);
+  void note_for_overlay(const FrameRecord& record);
   void take_late_answers();
   void note_arrival();
   bool is_over(const FrameTiming& timing);
 
   const WalkOptions& options_;
+  const Manifest& manifest_;
   const Display& display_;
   FrameSource& source_;
   WalkBooks& books_;
@@ -61,11 +65,14 @@ class WalkLeg {
   bool settle_;
   WalkRooms rooms_;
   std::unique_ptr<BaselineStore> baselines_;  // null: the method reads the pack alone
+  std::unique_ptr<Spectator> spectator_;      // null: the mirror shows eyes, or there is none
   FrameRenderer renderer_;
   FrameSettings settings_;
+  EyeResolution eyes_;
   WallFade wall_fade_;
   FrameBook book_;
   std::uint32_t pipelines_built_ = 0;  // before the frame under way
+  std::int64_t period_ns_ = 0;
   bool screenshot_ = false;
 };
 

@@ -15,7 +15,7 @@ constexpr auto kSettlePatience = std::chrono::minutes(5);
 constexpr double kVelocitySmoothing_s = 0.2;  // head bob and sway average out
 // Of an arena whose pieces come and go; with less in it nearly every level finds room (ProbeArenaTest).
 constexpr double kUsableShare = 7.0 / 8.0;
-constexpr double kJump_m = 0.5;               // further in one frame is a teleport, not a motion
+constexpr double kJump_m = 0.5;  // further in one frame is a teleport, not a motion
 
 // What all rooms at all levels can take.
 std::uint64_t bytes_of_all(const Manifest& manifest) {
@@ -25,7 +25,8 @@ std::uint64_t bytes_of_all(const Manifest& manifest) {
 }
 
 ProbeStoreOptions store_options(const WalkRoomsOptions& options, const Manifest& manifest) {
-  ProbeStoreOptions store{.frame_slots = kFrameSlots, .fade_frames = options.fade_levels ? WalkRooms::kLevelFadeFrames : 0};
+  ProbeStoreOptions store{.frame_slots = kFrameSlots,
+                          .fade_frames = options.fade_levels ? WalkRooms::kLevelFadeFrames : 0};
   // A stated budget is taken at once: no other can have it later. Without one memory is taken as it is needed.
   if (options.budget_bytes != kUnlimitedBudget) {
     const auto all = static_cast<std::uint64_t>(static_cast<double>(bytes_of_all(manifest)) / kUsableShare);
@@ -34,8 +35,7 @@ ProbeStoreOptions store_options(const WalkRoomsOptions& options, const Manifest&
   return store;
 }
 
-StreamerOptions streamer_options(const WalkRoomsOptions& options, const Device& device,
-                                 const ChunkSource& source) {
+StreamerOptions streamer_options(const WalkRoomsOptions& options, const Device& device, const ChunkSource& source) {
   StreamerOptions streamer;
   if (options.budget_bytes != kUnlimitedBudget) {
     streamer.residency.budget_bytes = options.budget_bytes;
@@ -55,11 +55,15 @@ StreamerOptions streamer_options(const WalkRoomsOptions& options, const Device& 
 // Empty = it arrived.
 std::string end_of(const LoadResult& load) {
   switch (load.end) {
-    case LoadResult::End::kArrived: return {};
-    case LoadResult::End::kRefused: return "takes more than the pack states";
-    case LoadResult::End::kCancelled: return "not needed any more";
+    case LoadResult::End::kArrived:
+      return {};
+    case LoadResult::End::kRefused:
+      return "takes more than the pack states";
+    case LoadResult::End::kCancelled:
+      return "not needed any more";
     case LoadResult::End::kUnavailable:
-    case LoadResult::End::kBad: return load.error;
+    case LoadResult::End::kBad:
+      return load.error;
   }
   return {};
 }
@@ -86,8 +90,7 @@ WalkRooms::WalkRooms(const Pack& pack, const Device& device, const WalkRoomsOpti
       free_air_(pack.manifest().grid, pack.manifest().probe_positions_m.size()),
       streamer_(
           pack.manifest(), *source_, [this](LoadedLevel&& loaded) { deliver(std::move(loaded)); },
-          [this](LevelKey key) { store_.evict(key.room, key.level); },
-          streamer_options(options, device, *source_)) {}
+          [this](LevelKey key) { store_.evict(key.room, key.level); }, streamer_options(options, device, *source_)) {}
 
 // On a loader thread.
 void WalkRooms::deliver(LoadedLevel&& loaded) {
@@ -137,7 +140,16 @@ void WalkRooms::settle() {
 }
 
 void WalkRooms::report_errors() {
-  for (const std::string& error : streamer_.take_errors()) progress_.note(error);
+  for (const std::string& error : streamer_.take_errors()) {
+    progress_.note(error);
+    last_error_ = error;
+  }
+}
+
+// Counted by the streamer from the moment of the request, by the store from that of the allocation.
+std::uint64_t WalkRooms::bytes_in_flight() const {
+  const std::uint64_t claimed = streamer_.statistics().device_bytes, held = store_.device_bytes();
+  return claimed > held ? claimed - held : 0;
 }
 
 StreamingFacts WalkRooms::facts() const {
@@ -147,10 +159,9 @@ StreamingFacts WalkRooms::facts() const {
   facts.device_budget_bytes = options_.budget_bytes == kUnlimitedBudget ? 0 : options_.budget_bytes;
   facts.need_to_resident_ns = statistics.need_to_resident_ns;
   for (const LoadResult& load : streamer_.loads()) {
-    facts.loads.push_back({pack_.manifest().rooms[load.key.room].id, load.key.level, load.thread,
-                           end_of(load), load.bytes_disk,
-                           load.bytes_device, load.requested_ns, load.started_ns, load.read_ns, load.decoded_ns,
-                           load.finished_ns});
+    facts.loads.push_back({pack_.manifest().rooms[load.key.room].id, load.key.level, load.thread, end_of(load),
+                           load.bytes_disk, load.bytes_device, load.requested_ns, load.started_ns, load.read_ns,
+                           load.decoded_ns, load.finished_ns});
   }
   return facts;
 }

@@ -55,6 +55,12 @@ class WalkRooms {
   // False inside walls and whatever else is solid.
   bool is_free(const glm::dvec3& point_m) const { return free_air_.is_free(point_m); }
   StreamingFacts facts() const;
+  // As of the last update; cheap.
+  std::uint64_t budget_bytes() const { return options_.budget_bytes; }
+  std::uint64_t bytes_in_flight() const;
+  std::size_t troubled_levels() const { return streamer_.troubled(); }
+  // What could not be loaded last, or came after all; empty = nothing yet.
+  const std::string& last_error() const { return last_error_; }
 
  private:
   void deliver(LoadedLevel&& loaded);
@@ -69,6 +75,7 @@ class WalkRooms {
   RoomStreamer streamer_;  // its threads hand rooms to the store: they end first
   Walker walker_;
   std::optional<std::int64_t> last_display_ns_;
+  std::string last_error_;
   std::uint64_t bytes_uploaded_ = 0;  // as of the last update
   double darkness_ = 1.0;
 };

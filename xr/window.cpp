@@ -6,6 +6,8 @@
 #include <GLFW/glfw3.h>
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "content/error.h"
 #include "render/check.h"
 
@@ -26,7 +28,9 @@ Window::Library::Library() {
   if (glfwInit() != GLFW_TRUE) throw NoDevice(fmt::format("no window: no display answers ({})", glfw_reason()));
 }
 
-Window::Library::~Library() { glfwTerminate(); }
+Window::Library::~Library() {
+  glfwTerminate();
+}
 
 Window::Window(const std::string& title, VkExtent2D size) {
   if (glfwVulkanSupported() != GLFW_TRUE)
@@ -71,9 +75,13 @@ WindowInput Window::poll() {
   input.wish = {static_cast<double>(down(GLFW_KEY_D)) - static_cast<double>(down(GLFW_KEY_A)),
                 static_cast<double>(down(GLFW_KEY_W)) - static_cast<double>(down(GLFW_KEY_S))};
   input.run = down(GLFW_KEY_LEFT_SHIFT) || down(GLFW_KEY_RIGHT_SHIFT);
-  const bool screenshot = down(GLFW_KEY_F12);
-  input.screenshot = screenshot && !screenshot_was_down_;
-  screenshot_was_down_ = screenshot;
+  const auto pressed = [&](int key, bool& was_down) {
+    const bool is_down = down(key);
+    return !std::exchange(was_down, is_down) && is_down;
+  };
+  input.overlay = pressed(GLFW_KEY_F1, overlay_was_down_);
+  input.lookups = pressed(GLFW_KEY_F2, lookups_was_down_);
+  input.screenshot = pressed(GLFW_KEY_F12, screenshot_was_down_);
   input.closed = down(GLFW_KEY_ESCAPE) || glfwWindowShouldClose(window_) == GLFW_TRUE;
 
   glm::dvec2 cursor_px;

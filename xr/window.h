@@ -17,6 +17,8 @@ struct WindowInput {
   bool run = false;                 // shift is held
   glm::dvec2 drag_px{0.0};          // the mouse moved by this with its button held, y down
   std::optional<glm::dvec2> click;  // a click without a drag: place in the window, (0, 0) top left to (1, 1)
+  bool overlay = false;             // F1
+  bool lookups = false;             // F2
   bool screenshot = false;          // F12
   bool closed = false;              // Esc, or the window's own button
 };
@@ -50,7 +52,7 @@ class Window {
   glm::dvec2 cursor_px_{0.0};
   double dragged_px_ = 0.0;  // since the button went down
   bool button_was_down_ = false;
-  bool screenshot_was_down_ = false;
+  bool overlay_was_down_ = false, lookups_was_down_ = false, screenshot_was_down_ = false;
 };
 
 }  // namespace probewalk

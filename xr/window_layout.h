@@ -10,8 +10,9 @@
 
 namespace probewalk {
 
-// What of the eyes a window shows; kNone: there is no window (a headset without a mirror).
-enum class ShownEyes { kBoth, kLeft, kRight, kNone };
+// What a window shows: eyes; kSpectator: a view of its own beside a headset; kNone: there is no window (a headset
+// without a mirror).
+enum class ShownEyes { kBoth, kLeft, kRight, kSpectator, kNone };
 
 struct ShownView {
   std::uint32_t view = 0;

@@ -22,7 +22,8 @@ WindowSource::WindowSource(Window& window, const Device& device, const FloorMap&
     : window_(window),
       options_(options),
       images_(device, options.eye_size, 2),
-      swapchain_(device, window.create_surface(device.instance()), EyeImages::kCount),
+      swapchain_(device, window.create_surface(device.instance()), EyeImages::kCount, WindowSwapchain::Sharing::kAlone,
+                 options.overlay),
       pacer_(static_cast<std::int64_t>(std::llround(1e9 / window.refresh_hz()))),
       walker_(floor, start) {}
 
@@ -34,6 +35,8 @@ std::string WindowSource::description() const {
 SourceState WindowSource::poll() {
   input_ = window_.poll();
   screenshot_ = screenshot_ || input_.screenshot;
+  lookups_ = lookups_ != input_.lookups;
+  if (input_.overlay && options_.overlay != nullptr) options_.overlay->toggle();
   if (lost_) return SourceState::kLost;
   if (input_.closed) return SourceState::kFinished;
   const double radians_per_px = options_.eyes.vertical_fov_rad / static_cast<double>(options_.eye_size.height);
@@ -77,8 +80,8 @@ std::vector<ViewPose> WindowSource::locate(const FrameTiming&, ViewPose* head) {
   return eyes_of(walker_.head(), options_.eyes, options_.eye_size, head);
 }
 
-FrameTarget WindowSource::acquire() {
-  target_ = images_.next();
+FrameTarget WindowSource::acquire(VkExtent2D drawn) {
+  target_ = images_.next(drawn);
   swapchain_.wait_for(images_.current());
   return target_;
 }
@@ -91,6 +94,12 @@ void WindowSource::end(const FrameTiming&, const std::vector<ViewPose>& rendered
   lost_ = !swapchain_.present(images_.current(), target_, layout, window);
 }
 
-bool WindowSource::take_screenshot_request() { return std::exchange(screenshot_, false); }
+bool WindowSource::take_lookups_request() {
+  return std::exchange(lookups_, false);
+}
+
+bool WindowSource::take_screenshot_request() {
+  return std::exchange(screenshot_, false);
+}
 
 }  // namespace probewalk

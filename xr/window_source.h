@@ -18,6 +18,7 @@ struct WindowOptions {
   VkExtent2D eye_size{640, 720};
   ShownEyes shown = ShownEyes::kBoth;
   EyeGeometry eyes;
+  OverlayBoard* overlay = nullptr;  // shown and hidden by F1; outlives the source
 };
 
 // The window that shows eyes of this size without scaling them.
@@ -39,10 +40,11 @@ class WindowSource final : public FrameSource {
   VkExtent2D view_extent() const override { return options_.eye_size; }
   std::uint32_t view_count() const override { return 2; }
   VkFormat color_format() const override { return EyeImages::kFormat; }
-  FrameTarget acquire() override;
+  FrameTarget acquire(VkExtent2D drawn) override;
   void end(const FrameTiming& timing, const std::vector<ViewPose>& rendered_views) override;
   float fade() const override { return walker_.fade(); }
   bool take_screenshot_request() override;
+  bool take_lookups_request() override;
 
  private:
   void teleport_to(glm::dvec2 click);
@@ -56,7 +58,7 @@ class WindowSource final : public FrameSource {
   WindowInput input_;
   FrameTarget target_;
   std::int64_t last_display_ns_ = 0;
-  bool screenshot_ = false;
+  bool screenshot_ = false, lookups_ = false;
   bool lost_ = false;
 };
 

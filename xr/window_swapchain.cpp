@@ -4,6 +4,8 @@
 
 #include "content/error.h"
 #include "render/check.h"
+#include "render/image.h"
+#include "xr/latency/clock.h"
 
 namespace probewalk {
 namespace {
@@ -31,8 +33,9 @@ void barrier(VkCommandBuffer commands, VkImage image, std::uint32_t layers, VkIm
 
 }  // namespace
 
-WindowSwapchain::WindowSwapchain(const Device& device, VkSurfaceKHR surface, std::uint32_t slots, Present present)
-    : device_(device), surface_(surface), present_(present) {
+WindowSwapchain::WindowSwapchain(const Device& device, VkSurfaceKHR surface, std::uint32_t slots, Sharing sharing,
+                                 const OverlayBoard* overlay)
+    : device_(device), surface_(surface), sharing_(sharing), overlay_(device, overlay, slots) {
   choose_format_and_mode();
   VkCommandPoolCreateInfo pool{VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO};
   pool.flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT;
@@ -58,6 +61,7 @@ WindowSwapchain::~WindowSwapchain() {
   release_images();  // those retired, too
   if (swapchain_ != VK_NULL_HANDLE) vkDestroySwapchainKHR(device_.handle(), swapchain_, nullptr);
   for (const Slot& slot : slots_) {
+    vkDestroyImageView(device_.handle(), slot.screen, nullptr);
     vkDestroySemaphore(device_.handle(), slot.available, nullptr);
     vkDestroyFence(device_.handle(), slot.done, nullptr);
   }
@@ -84,8 +88,14 @@ void WindowSwapchain::choose_format_and_mode() {
   std::vector<VkPresentModeKHR> modes(count);
   check(vkGetPhysicalDeviceSurfacePresentModesKHR(device_.physical(), surface_, &count, modes.data()),
         "vkGetPhysicalDeviceSurfacePresentModesKHR");
-  // The newest picture at each refresh, without waiting; FIFO is what every display has.
-  if (std::ranges::find(modes, VK_PRESENT_MODE_MAILBOX_KHR) != modes.end()) mode_ = VK_PRESENT_MODE_MAILBOX_KHR;
+  // The newest picture at each refresh, without waiting; FIFO is what every display has. Beside a headset a picture may
+  // rather tear than make its driver wait for the refresh.
+  const auto offers = [&](VkPresentModeKHR mode) { return std::ranges::find(modes, mode) != modes.end(); };
+  if (offers(VK_PRESENT_MODE_MAILBOX_KHR)) {
+    mode_ = VK_PRESENT_MODE_MAILBOX_KHR;
+  } else if (sharing_ == Sharing::kBesideHeadset && offers(VK_PRESENT_MODE_IMMEDIATE_KHR)) {
+    mode_ = VK_PRESENT_MODE_IMMEDIATE_KHR;
+  }
 }
 
 // Our own copies, not the device: other threads go on using its queue.
@@ -125,7 +135,7 @@ bool WindowSwapchain::recreate(VkExtent2D window) {
   info.imageColorSpace = format_.colorSpace;
   info.imageExtent = extent_;
   info.imageArrayLayers = 1;
-  info.imageUsage = VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+  info.imageUsage = VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT;
   info.imageSharingMode = VK_SHARING_MODE_EXCLUSIVE;
   info.preTransform = can.currentTransform;
   info.compositeAlpha = VK_COMPOSITE_ALPHA_OPAQUE_BIT_KHR;
@@ -165,13 +175,14 @@ bool WindowSwapchain::present(std::uint32_t index, const FrameTarget& eyes, cons
   const Slot& slot = slots_[index];
   wait_for(index);
   std::uint32_t image = 0;
-  const VkResult acquired = vkAcquireNextImageKHR(device_.handle(), swapchain_, kAcquireTimeout_ns, slot.available,
-                                                  VK_NULL_HANDLE, &image);
+  const std::uint64_t patience_ns = sharing_ == Sharing::kBesideHeadset ? 0 : kAcquireTimeout_ns;
+  const VkResult acquired =
+      vkAcquireNextImageKHR(device_.handle(), swapchain_, patience_ns, slot.available, VK_NULL_HANDLE, &image);
   if (acquired == VK_ERROR_SURFACE_LOST_KHR) return false;
   if (acquired == VK_ERROR_OUT_OF_DATE_KHR) return recreate(window);
   if (check(acquired, "vkAcquireNextImageKHR") == VK_TIMEOUT || acquired == VK_NOT_READY) return true;
 
-  record(slot, images_[image], eyes, layout);
+  record(index, images_[image], eyes, layout);
   VkCommandBufferSubmitInfo commands{VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO};
   commands.commandBuffer = slot.commands;
   VkSemaphoreSubmitInfo before{VK_STRUCTURE_TYPE_SEMAPHORE_SUBMIT_INFO};
@@ -189,7 +200,7 @@ bool WindowSwapchain::present(std::uint32_t index, const FrameTarget& eyes, cons
   submit.pSignalSemaphoreInfos = &after;
   check(vkResetFences(device_.handle(), 1, &slot.done), "vkResetFences");
   device_.submit(submit, slot.done);
-  if (present_ == Present::kAfterTheCopy) wait_for(index);
+  if (sharing_ == Sharing::kBesideHeadset) wait_for(index);
 
   VkPresentInfoKHR show{VK_STRUCTURE_TYPE_PRESENT_INFO_KHR};
   show.waitSemaphoreCount = 1;
@@ -200,16 +211,20 @@ bool WindowSwapchain::present(std::uint32_t index, const FrameTarget& eyes, cons
   VkResult shown = VK_SUCCESS;
   {
     const auto queue = device_.lock_queue();
+    const std::int64_t locked_ns = now_ns();
     shown = vkQueuePresentKHR(device_.queue(), &show);
+    longest_lock_ns_ = std::max(longest_lock_ns_, now_ns() - locked_ns);
   }
   if (shown == VK_ERROR_SURFACE_LOST_KHR) return false;
   if (shown == VK_ERROR_OUT_OF_DATE_KHR || shown == VK_SUBOPTIMAL_KHR) return recreate(window);
   check(shown, "vkQueuePresentKHR");
+  ++presented_;
   return true;
 }
 
-void WindowSwapchain::record(const Slot& slot, VkImage screen, const FrameTarget& eyes,
-                             const std::vector<ShownView>& layout) const {
+void WindowSwapchain::record(std::uint32_t index, VkImage screen, const FrameTarget& eyes,
+                             const std::vector<ShownView>& layout) {
+  const Slot& slot = slots_[index];
   VkCommandBufferBeginInfo begin{VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
   begin.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
   check(vkBeginCommandBuffer(slot.commands, &begin), "vkBeginCommandBuffer");
@@ -235,9 +250,28 @@ void WindowSwapchain::record(const Slot& slot, VkImage screen, const FrameTarget
     vkCmdBlitImage(slot.commands, eyes.image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, screen,
                    VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &copy, VK_FILTER_LINEAR);
   }
-  barrier(slot.commands, screen, 1, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_IMAGE_LAYOUT_PRESENT_SRC_KHR, kCopy,
-          VK_ACCESS_2_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, 0);
+  if (overlay_.prepare(format_.format)) {
+    paint_overlay(index, screen);
+  } else {
+    barrier(slot.commands, screen, 1, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_IMAGE_LAYOUT_PRESENT_SRC_KHR, kCopy,
+            VK_ACCESS_2_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, 0);
+  }
   check(vkEndCommandBuffer(slot.commands), "vkEndCommandBuffer");
+}
+
+// Over the eyes' pictures, and on to the display.
+void WindowSwapchain::paint_overlay(std::uint32_t index, VkImage screen) {
+  Slot& slot = slots_[index];
+  constexpr VkPipelineStageFlags2 kDraw = VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT;
+  constexpr VkAccessFlags2 kDrawn = VK_ACCESS_2_COLOR_ATTACHMENT_READ_BIT | VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT;
+  barrier(slot.commands, screen, 1, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
+          VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT, kDraw, kDrawn);
+  vkDestroyImageView(device_.handle(), slot.screen, nullptr);
+  slot.screen = VK_NULL_HANDLE;
+  slot.screen = make_layer_view(device_, screen, format_.format, 0);
+  overlay_.paint(slot.commands, index, slot.screen, extent_);
+  barrier(slot.commands, screen, 1, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, VK_IMAGE_LAYOUT_PRESENT_SRC_KHR, kDraw,
+          VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, 0);
 }
 
 }  // namespace probewalk

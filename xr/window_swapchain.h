@@ -1,23 +1,28 @@
 // The window's images: takes finished eye pictures to the screen by a copy on the queue.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "render/device.h"
 #include "render/frame_target.h"
+#include "xr/overlay/overlay_painter.h"
 #include "xr/window_layout.h"
 
 namespace probewalk {
 
 class WindowSwapchain {
  public:
-  // Some drivers (lavapipe) wait inside vkQueuePresentKHR for the picture: kAfterTheCopy waits before it instead, so
-  // that others who need the queue meanwhile are not held up.
-  enum class Present { kAtOnce, kAfterTheCopy };
+  // Who else uses the queue. kAlone: presenting may wait for the display. kBesideHeadset: the queue's lock is never
+  // held while waiting: pictures replace one another or tear rather than queue up, where the display offers that; one
+  // is given up when no image is free; and the copy is waited for before vkQueuePresentKHR, inside which some drivers
+  // (lavapipe) would wait for it.
+  enum class Sharing { kAlone, kBesideHeadset };
 
-  // Takes the surface over. `slots` copies may be in flight. Throws NoDevice when the surface cannot take sRGB
-  // pictures.
-  WindowSwapchain(const Device& device, VkSurfaceKHR surface, std::uint32_t slots, Present present = Present::kAtOnce);
+  // Takes the surface over. `slots` copies may be in flight. `overlay` outlives this; null = none is ever shown. Throws
+  // NoDevice when the surface cannot take sRGB pictures.
+  WindowSwapchain(const Device& device, VkSurfaceKHR surface, std::uint32_t slots, Sharing sharing,
+                  const OverlayBoard* overlay);
   ~WindowSwapchain();
   WindowSwapchain(const WindowSwapchain&) = delete;
   WindowSwapchain& operator=(const WindowSwapchain&) = delete;
@@ -28,21 +33,28 @@ class WindowSwapchain {
   // False when the surface is gone.
   bool present(std::uint32_t slot, const FrameTarget& eyes, const std::vector<ShownView>& layout, VkExtent2D window);
 
+  // Pictures that reached the display, and the longest that one of them held the queue's lock in vkQueuePresentKHR.
+  std::uint64_t presented() const { return presented_; }
+  std::int64_t longest_lock_ns() const { return longest_lock_ns_; }
+  VkPresentModeKHR mode() const { return mode_; }
+
  private:
   struct Slot {
     VkCommandBuffer commands = VK_NULL_HANDLE;
     VkSemaphore available = VK_NULL_HANDLE;
     VkFence done = VK_NULL_HANDLE;
+    VkImageView screen = VK_NULL_HANDLE;  // with the overlay only
   };
   void choose_format_and_mode();
   bool recreate(VkExtent2D window);
   void wait_for_all();
   void release_images();
-  void record(const Slot& slot, VkImage screen, const FrameTarget& eyes, const std::vector<ShownView>& layout) const;
+  void record(std::uint32_t slot, VkImage screen, const FrameTarget& eyes, const std::vector<ShownView>& layout);
+  void paint_overlay(std::uint32_t slot, VkImage screen);
 
   const Device& device_;
   VkSurfaceKHR surface_;
-  const Present present_;
+  const Sharing sharing_;
   VkSurfaceFormatKHR format_{};
   VkPresentModeKHR mode_ = VK_PRESENT_MODE_FIFO_KHR;
   VkSwapchainKHR swapchain_ = VK_NULL_HANDLE;
@@ -52,6 +64,9 @@ class WindowSwapchain {
   std::vector<VkSemaphore> retired_;  // of the swapchain before, whose last picture may still be waited for
   VkCommandPool pool_ = VK_NULL_HANDLE;
   std::vector<Slot> slots_;
+  OverlayPainter overlay_;
+  std::uint64_t presented_ = 0;
+  std::int64_t longest_lock_ns_ = 0;
 };
 
 }  // namespace probewalk

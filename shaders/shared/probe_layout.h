@@ -128,6 +128,7 @@ struct FrameConstants {
   // pixels; the rest one of 4 x 4 (foveation.h). Without foveation both are 0.
   float full_rate_cosine;
   float half_rate_cosine;
+  pw_uvec2 hidden_tiles_address;  // of what shaders/hidden_tiles.glsl reads; with a visibility mask only
 };
 
 PW_SHARED_END
@@ -135,7 +136,7 @@ PW_SHARED_END
 #ifdef __cplusplus
 namespace probewalk {
 static_assert(sizeof(ProbeRecord) == 64 && sizeof(GridConstants) == 64 && sizeof(ViewConstants) == 96);
-static_assert(sizeof(FrameConstants) == 64 + 16 + 32 + 4 * 96 + 16);
+static_assert(sizeof(FrameConstants) == 64 + 16 + 32 + 4 * 96 + 24);
 }  // namespace probewalk
 #endif
 

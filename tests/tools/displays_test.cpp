@@ -38,7 +38,8 @@ bool installed(const std::string& program) {
 RunResult run_script(const fs::path& folder, const std::string& script) {
   std::ofstream(folder / "script.sh") << "set -u\ncd '" << folder.string() << "'\nprobewalk='" << PROBEWALK_EXECUTABLE
                                       << "'\npack='" << pack().string() << "'\nwith_monado='" << PROBEWALK_SOURCE_DIR
-                                      << "/tools/lib/with-monado.sh'\n" << script << "\n";
+                                      << "/tools/lib/with-monado.sh'\n"
+                                      << script << "\n";
   const std::string file = (folder / "script.sh").string();
   const int status =
       std::system(("bash '" + file + "' >'" + folder.string() + "/stdout' 2>'" + folder.string() + "/stderr'").c_str());
@@ -70,17 +71,28 @@ void write_pose(const fs::path& file) {
 
 const char* const kPose = " --path pose.jsonl --eye-size 96x64 --frames 3 --settle --save-frames pictures --validate";
 
-void expect_same_pictures(const fs::path& a, const fs::path& b) {
+// Where `a` is a headset whose lenses hide parts, those are black.
+void expect_same_pictures(const fs::path& a, const fs::path& b, bool hides_parts = false) {
   for (const char* name : {"frame-000002-left.png", "frame-000002-right.png"}) {
     const ImageRgb8 first = read_png(a / "pictures" / name), second = read_png(b / "pictures" / name);
     ASSERT_EQ(first.rgb.size(), second.rgb.size());
     int largest = 0;
     double sum = 0;
+    std::size_t hidden = 0;
     for (std::size_t i = 0; i < first.rgb.size(); ++i) {
+      const std::size_t pixel = i / 3 * 3;
+      if (hides_parts && first.rgb[pixel] == 0 && first.rgb[pixel + 1] == 0 && first.rgb[pixel + 2] == 0) {
+        ++hidden;
+        continue;
+      }
       largest = std::max(largest, std::abs(first.rgb[i] - second.rgb[i]));
       sum += first.rgb[i];
     }
     EXPECT_LE(largest, 1) << name;
+    if (hides_parts) {
+      EXPECT_GT(hidden, 0u) << name;
+      EXPECT_LT(hidden, first.rgb.size() / 2) << name;
+    }
     EXPECT_GT(sum / static_cast<double>(first.rgb.size()), 60.0) << name << " is dark";
   }
 }
@@ -96,6 +108,35 @@ const fs::path& offscreen_pictures() {
   return folder;
 }
 
+// What xwd wrote, 24 or 32 bits a pixel.
+ImageRgb8 read_xwd(const fs::path& file) {
+  const std::string bytes = read_text(file);
+  const auto word = [&](std::size_t i) {
+    std::uint32_t value = 0;
+    for (std::size_t k = 0; k < 4; ++k) value = value << 8 | static_cast<std::uint8_t>(bytes.at(4 * i + k));
+    return value;
+  };
+  const std::size_t width = word(4), height = word(5), bits = word(11), row = word(12);
+  const std::size_t start = word(0) + 12 * word(19);
+  ImageRgb8 image{static_cast<int>(width), static_cast<int>(height), {}};
+  for (std::size_t y = 0; y < height; ++y) {
+    for (std::size_t x = 0; x < width; ++x) {
+      for (const std::size_t c : {2, 1, 0}) {
+        image.rgb.push_back(static_cast<std::uint8_t>(bytes.at(start + y * row + x * bits / 8 + c)));
+      }
+    }
+  }
+  return image;
+}
+
+double mean_of(const ImageRgb8& image, int left, int top, int right, int bottom) {
+  double sum = 0;
+  for (int y = top; y < bottom; ++y) {
+    for (int x = left; x < right; ++x) sum += image.rgb[3 * static_cast<std::size_t>(y * image.width_px + x) + 1];
+  }
+  return sum / ((right - left) * (bottom - top));
+}
+
 TEST(Displays, HeadsetShowsTheSamePictureAsOffscreen) {
   if (!installed("monado-service")) GTEST_SKIP() << "monado-service is not installed";
   const fs::path folder = fresh_folder("displays-headset");
@@ -103,7 +144,7 @@ TEST(Displays, HeadsetShowsTheSamePictureAsOffscreen) {
   const RunResult run = run_script(
       folder, std::string("bash \"$with_monado\" null \"$probewalk\" walk \"$pack\" --display headset") + kPose);
   ASSERT_EQ(run.exit_code, 0) << run.err;
-  expect_same_pictures(folder, offscreen_pictures());
+  expect_same_pictures(folder, offscreen_pictures(), true);
 }
 
 TEST(Displays, HeadsetWalkIsFocusedAndTheValidationLayersAreSilent) {
@@ -190,7 +231,7 @@ TEST(Displays, MirrorShowsWhatTheWearerSeesAndTheWindowTakesOver) {
   const fs::path folder = fresh_folder("displays-mirror");
   const RunResult run = run_script(folder, std::string(kVirtualScreen) + kMortalService +
                                                "\"$probewalk\" walk \"$pack\" --display headset --mirror both "
-                                               "--eye-size 64x48 --report report --validate 2>walk.log &\n"
+                                               "--overlay --eye-size 64x48 --report report --validate 2>walk.log &\n"
                                                "walk=$!\n"
                                                "await walk.log FOCUSED 1\nsleep 2\n"
                                                "kill -KILL $service; wait $service 2>/dev/null\n"
@@ -220,18 +261,62 @@ TEST(Displays, WindowShowsTheSamePictureAsOffscreen) {
   if (!installed("Xvfb")) GTEST_SKIP() << "Xvfb is not installed";
   const fs::path folder = fresh_folder("displays-window");
   write_pose(folder / "pose.jsonl");
-  const RunResult run = run_script(
-      folder, std::string(kVirtualScreen) + "\"$probewalk\" walk \"$pack\" --display window" + kPose);
+  const RunResult run =
+      run_script(folder, std::string(kVirtualScreen) + "\"$probewalk\" walk \"$pack\" --display window" + kPose);
   ASSERT_EQ(run.exit_code, 0) << run.err;
   expect_same_pictures(folder, offscreen_pictures());
+}
+
+TEST(Displays, SpectatorHasAViewOfItsOwnBesideTheHeadset) {
+  if (!installed("monado-service") || !installed("Xvfb") || !installed("xwd")) {
+    GTEST_SKIP() << "monado-service, Xvfb or xwd is not installed";
+  }
+  const fs::path folder = fresh_folder("displays-spectator");
+  const RunResult run = run_script(
+      folder, std::string(kVirtualScreen) + kMortalService +
+                  "\"$probewalk\" walk \"$pack\" --display headset --mirror spectator --eye-size 64x48 --frames 150 "
+                  "--report report --validate 2>walk.log &\n"
+                  "walk=$!\n"
+                  "await walk.log FOCUSED 1\nsleep 4\nxwd -root -silent -out screen.xwd\n"
+                  "wait $walk; code=$?\n"
+                  "kill $service; rm -rf \"$XDG_RUNTIME_DIR\"\nexit $code");
+  ASSERT_EQ(run.exit_code, 0) << run.err << read_text(folder / "walk.log");
+  EXPECT_THAT(read_text(folder / "walk.log"), Not(HasSubstr("VUID")));
+  const ImageRgb8 screen = read_xwd(folder / "screen.xwd");
+  write_png(folder / "spectator.png", screen);
+  EXPECT_GT(mean_of(screen, 100, 100, 540, 400), 40.0) << "nothing is shown";
+}
+
+TEST(Displays, OverlayLiesOverTheWindowsPictureAndTheLayersAreSilent) {
+  if (!installed("Xvfb") || !installed("xwd")) GTEST_SKIP() << "Xvfb or xwd is not installed";
+  const fs::path folder = fresh_folder("displays-overlay");
+  write_pose(folder / "pose.jsonl");
+  const RunResult run = run_script(
+      folder, std::string(kVirtualScreen) +
+                  "for overlay in '' --overlay; do\n"
+                  "  \"$probewalk\" walk \"$pack\" --display window --mirror left --path pose.jsonl --eye-size 640x480 "
+                  "--seconds 5 --settle $overlay --validate &\n"
+                  "  walk=$!\n  sleep 4\n  xwd -root -silent -out screen$overlay.xwd\n  wait $walk || exit 1\n"
+                  "done");
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.err, Not(HasSubstr("VUID")));
+  const ImageRgb8 without = read_xwd(folder / "screen.xwd"), with = read_xwd(folder / "screen--overlay.xwd");
+  write_png(folder / "overlay.png", with);
+  ASSERT_EQ(with.rgb.size(), without.rgb.size());
+  EXPECT_GT(mean_of(without, 20, 20, 380, 300), 60.0);
+  EXPECT_LT(mean_of(with, 20, 20, 380, 300), 0.7 * mean_of(without, 20, 20, 380, 300)) << "no panel";
+  EXPECT_NEAR(mean_of(with, 420, 20, 620, 460), mean_of(without, 420, 20, 620, 460), 1.0) << "beyond the panel";
+  const auto& rgb = with.rgb;
+  EXPECT_GT(*std::max_element(rgb.begin() + 3 * 640 * 14, rgb.begin() + 3 * 640 * 26), 200) << "no letters";
 }
 
 TEST(Displays, AutoTakesTheWindowWhereNoRuntimeAnswers) {
   if (!installed("Xvfb")) GTEST_SKIP() << "Xvfb is not installed";
   const fs::path folder = fresh_folder("displays-auto-window");
-  const RunResult run = run_script(
-      folder, std::string(kVirtualScreen) + "export XR_RUNTIME_JSON=/nonexistent.json\n"
-              "\"$probewalk\" walk \"$pack\" --eye-size 64x48 --mirror right --seconds 1");
+  const RunResult run =
+      run_script(folder, std::string(kVirtualScreen) +
+                             "export XR_RUNTIME_JSON=/nonexistent.json\n"
+                             "\"$probewalk\" walk \"$pack\" --eye-size 64x48 --mirror right --seconds 1");
   EXPECT_EQ(run.exit_code, 0) << run.err;
   EXPECT_THAT(run.err, HasSubstr("display: window"));
   EXPECT_THAT(run.err, HasSubstr("because no OpenXR runtime answers"));
@@ -262,7 +347,11 @@ TEST(Displays, WrongWalkOptionsAreRefusedInOneLine) {
   EXPECT_EQ(refused("--frames 0"), 2);
   EXPECT_EQ(refused("--settle --realtime"), 2);
   EXPECT_EQ(refused("--mirror nose"), 2);
+  EXPECT_EQ(refused("--eye-scale 0.5"), 2);
+  EXPECT_EQ(refused("--eye-scale half"), 2);
+  EXPECT_EQ(refused("--eye-scale nan"), 2);
   EXPECT_EQ(refused("--mirror off --display window"), 2);
+  EXPECT_EQ(refused("--mirror spectator --display window"), 2);
   EXPECT_EQ(refused("--path nowhere.jsonl"), 3);
   EXPECT_EQ(refused("--record nowhere/p.jsonl --eye-size 32x32 --frames 1"), 3);
 }

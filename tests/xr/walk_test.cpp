@@ -3,7 +3,6 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-
 #include <unistd.h>
 
 #include <algorithm>
@@ -139,7 +138,7 @@ TEST(WalkOffscreen, ShowsTheFinestLevelFromTheFirstFrameOn) {
   EXPECT_EQ(left.width_px, 64);
   EXPECT_EQ(left.height_px, 48);
   EXPECT_GT(mean(left), 60.0);
-  EXPECT_NE(left.rgb, right.rgb);  // two eyes in two places
+  EXPECT_NE(left.rgb, right.rgb);                                                  // two eyes in two places
   EXPECT_NE(left.rgb, read_png(*options.pictures / "frame-000002-left.png").rgb);  // the tour goes on
 }
 
@@ -214,9 +213,9 @@ class DoomedSource final : public FrameSource {
   VkExtent2D view_extent() const override { return whole_->view_extent(); }
   std::uint32_t view_count() const override { return whole_->view_count(); }
   VkFormat color_format() const override { return whole_->color_format(); }
-  FrameTarget acquire() override {
+  FrameTarget acquire(VkExtent2D drawn) override {
     if (++frames_ == 5) check(VK_ERROR_DEVICE_LOST, "vkQueueSubmit2");
-    return whole_->acquire();
+    return whole_->acquire(drawn);
   }
   void end(const FrameTiming& timing, const std::vector<ViewPose>& views) override { whole_->end(timing, views); }
 
@@ -279,7 +278,7 @@ TEST(WalkView, PlaysATourOnceOverItsFrames) {
     VkExtent2D view_extent() const override { return {1, 1}; }
     std::uint32_t view_count() const override { return 1; }
     VkFormat color_format() const override { return VK_FORMAT_R8G8B8A8_SRGB; }
-    FrameTarget acquire() override { return {}; }
+    FrameTarget acquire(VkExtent2D) override { return {}; }
     void end(const FrameTiming&, const std::vector<ViewPose>&) override {}
   } source;
   Path path;

@@ -2,6 +2,7 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cstdio>
 #include <iterator>
 #include <map>
@@ -13,6 +14,7 @@
 #include "tools/probewalk/commands.h"
 #include "tools/probewalk/foveation_option.h"
 #include "tools/probewalk/method_options.h"
+#include "xr/eye_scale.h"
 #include "xr/latency/run_files.h"
 #include "xr/latency/summary_json.h"
 #include "xr/walk.h"
@@ -26,7 +28,7 @@ constexpr std::uint32_t kMaxEyeSide_px = 8192;
 struct WalkArguments {
   WalkOptions walk;
   MethodOptions method;
-  std::string eye_size;
+  std::string eye_size, eye_scale;
   std::string path, record, report, pictures, cache;
   std::uint64_t frames = 0;
   double seconds = 0.0;
@@ -48,6 +50,15 @@ VkExtent2D parse_eye_size(const std::string& text) {
                                text, kMaxEyeSide_px));
   }
   return {width, height};
+}
+
+double parse_eye_scale(const std::string& text) {
+  double scale = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), scale);
+  if (error != std::errc() || end != text.data() + text.size() || !(scale >= kLeastEyeScale && scale <= 1.0)) {
+    throw BadUsage(fmt::format("--eye-scale {}: write auto, or a number from {} to 1", text, kLeastEyeScale));
+  }
+  return scale;
 }
 
 void print_ending(const WalkResult& result, const WalkArguments& arguments) {
@@ -89,12 +100,19 @@ void run_walk(WalkArguments arguments, const CommonOptions& common) {
   if (arguments.frames > 0) walk_options.frames = arguments.frames;
   if (arguments.seconds > 0.0) walk_options.seconds = arguments.seconds;
   if (!arguments.eye_size.empty()) walk_options.display.eye_size = parse_eye_size(arguments.eye_size);
+  if (!arguments.eye_scale.empty()) {
+    walk_options.eye_scale_adapts = arguments.eye_scale == "auto";
+    if (!*walk_options.eye_scale_adapts) walk_options.eye_scale = parse_eye_scale(arguments.eye_scale);
+  }
   if (arguments.budget_mib > 0) walk_options.budget_bytes = arguments.budget_mib << 20;
   if (arguments.settle || arguments.realtime) walk_options.settle = arguments.settle;
   if (arguments.ev_option->count() > 0) walk_options.exposure_ev = arguments.ev;
   walk_options.loader_threads = common.threads > 0 ? static_cast<unsigned>(common.threads) : 2;
   walk_options.display.device.device = common.device;
   if (arguments.mirror_option->count() > 0) walk_options.display.window_eyes = arguments.mirror;
+  if (arguments.mirror == ShownEyes::kSpectator && walk_options.display.choice == DisplayChoice::kWindow) {
+    throw BadUsage("--mirror spectator shows others what a wearer sees; it is for headsets");
+  }
   if (arguments.mirror == ShownEyes::kNone && walk_options.display.choice == DisplayChoice::kWindow) {
     throw BadUsage("--mirror off leaves a window nothing to show; it is for headsets");
   }
@@ -135,8 +153,9 @@ void add_walk_command(CLI::App& app, CommonOptions& common) {
       "A window beside it shows what the wearer sees. When the runtime goes away, the walk goes on in a window or "
       "offscreen,\n"
       "and in the headset once it is there again.\n"
-      "Window: drag to look, WASD to walk, shift to run, click on the floor to go there, F12 for a picture, Esc to "
-      "leave.\n"
+      "Window: drag to look, WASD to walk, shift to run, click on the floor to go there, F1 for the overlay, F2 for "
+      "look-ups\n"
+      "instead of the picture (in a headset too), F12 for a picture, Esc to leave.\n"
       "Offscreen: plays the pack's tour once over its frames, on a fixed clock.\n\n"
       "  probewalk walk house.probes                                      the first display that answers\n"
       "  probewalk walk house.probes --frames 600 --report report/        with a report of its latency\n"
@@ -168,6 +187,12 @@ void add_walk_command(CLI::App& app, CommonOptions& common) {
       ->check(CLI::PositiveNumber);
   command->add_option("--eye-size", arguments->eye_size,
                       "Pixels of one eye, WxH (default: what the headset recommends; else 640x720)");
+  command
+      ->add_option(
+          "--eye-scale", arguments->eye_scale,
+          "How large of that the eyes are drawn, both ways: auto (from 1 down to 0.6 as the device has time), or "
+          "a number from 0.6 to 1 (default: auto in a headset, else 1)")
+      ->option_text("auto|NUMBER");
   command->add_option("--samples", walk_options.samples, "Rays of a pixel at an edge: 1, 2 or 4")
       ->check(CLI::IsMember({1, 2, 4}))
       ->capture_default_str();
@@ -179,16 +204,21 @@ void add_walk_command(CLI::App& app, CommonOptions& common) {
   command->add_option("--cache-limit", arguments->cache_mib, "MiB that they may take there (default: 8192)")
       ->check(CLI::Range(1ull, 1ull << 24));
   command->add_option("--report", arguments->report, "Write frames.csv, summary.json, trace.json and index.html here");
-  const std::map<std::string, ShownEyes> eyes{
-      {"both", ShownEyes::kBoth}, {"left", ShownEyes::kLeft}, {"right", ShownEyes::kRight}, {"off", ShownEyes::kNone}};
+  const std::map<std::string, ShownEyes> eyes{{"both", ShownEyes::kBoth},
+                                              {"left", ShownEyes::kLeft},
+                                              {"right", ShownEyes::kRight},
+                                              {"spectator", ShownEyes::kSpectator},
+                                              {"off", ShownEyes::kNone}};
   arguments->mirror_option =
       command
           ->add_option(
               "--mirror", arguments->mirror,
               "What a window shows: both, left, right (default: both in a window of its own, left beside a headset); "
-              "off: no window beside a headset")
+              "beside a headset also spectator: a view of its own, steadier and wider; off: no window beside a headset")
           ->transform(CLI::CheckedTransformer(eyes))
           ->option_text("NAME");
+  command->add_flag("--overlay", walk_options.overlay,
+                    "Show the overlay from the start (F1): frame times against the budget, rooms, streaming");
   CLI::Option* settle = command->add_flag("--settle", arguments->settle,
                                           "Wait for the rooms that each pose wants (default: offscreen only)");
   command->add_flag("--realtime", arguments->realtime, "Never wait for rooms: show what is there")->excludes(settle);

@@ -53,6 +53,7 @@ struct FrameRecord {
   std::int32_t level_wanted = -1;
   std::int64_t streaming_ns = 0;  // time the frame thread spent in or blocked on streaming
   std::uint64_t device_bytes = 0;
+  double eye_scale = 1.0;  // of both sides of what was drawn, against the display's own size
   // Mirror.
   Interval mirror;
   bool mirror_presented = false;

@@ -82,6 +82,7 @@ std::vector<Column> make_columns() {
   columns.push_back(column("level_wanted", &FrameRecord::level_wanted));
   columns.push_back(column("streaming_ns", &FrameRecord::streaming_ns));
   columns.push_back(column("device_bytes", &FrameRecord::device_bytes));
+  columns.push_back(column("eye_scale", &FrameRecord::eye_scale));
   columns.push_back(column("pose_error_mm", &FrameRecord::pose_error_mm));
   columns.push_back(column("pose_error_deg", &FrameRecord::pose_error_deg));
   columns.push_back(column("pose_answer", &FrameRecord::pose_answer));

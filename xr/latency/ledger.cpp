@@ -113,6 +113,8 @@ Summary Ledger::summary() const {
 
   Histogram streaming;
   std::vector<std::int64_t> periods;
+  double eye_scale_sum = 0.0;
+  std::uint64_t scaled_frames = 0;
   std::uint64_t budgeted = 0, within_budget = 0, levelled = 0, coarse = 0, stale_run = 0;
   for (std::size_t i = 0; i < frames_.size(); ++i) {
     const FrameRecord& frame = frames_[i];
@@ -140,6 +142,11 @@ Summary Ledger::summary() const {
     }
     ++summary.pose_answers[std::min(static_cast<std::size_t>(frame.pose_answer), kPoseAnswers - 1)];
     summary.early_pose_frames += frame.early_pose ? 1 : 0;
+    if (frame.should_render) {
+      summary.eye_scale_min = std::min(summary.eye_scale_min.value_or(frame.eye_scale), frame.eye_scale);
+      eye_scale_sum += frame.eye_scale;
+      ++scaled_frames;
+    }
     summary.missed += q.missed;
     summary.not_rendered += frame.should_render ? 0 : 1;
     // A discarded frame was never shown: its own refresh goes on with what was there.
@@ -149,6 +156,7 @@ Summary Ledger::summary() const {
     summary.stale_run_max = std::max(summary.stale_run_max, stale_run);
     if (!frame.discarded) stale_run = 0;
   }
+  if (scaled_frames > 0) summary.eye_scale_mean = eye_scale_sum / static_cast<double>(scaled_frames);
 
   if (!periods.empty()) {
     const auto middle = periods.begin() + static_cast<std::ptrdiff_t>(periods.size() / 2);

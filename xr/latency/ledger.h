@@ -63,6 +63,8 @@ struct Summary {
   std::optional<std::int64_t> clock_error_ns;  // largest; empty = device clock not calibrated
   std::vector<QuantitySummary> quantities;     // in the order of quantity_definitions()
   std::vector<WorstFrame> worst;               // at most ten, longest first
+  // Scale of the eyes' sides over the rendered frames; empty = none was rendered.
+  std::optional<double> eye_scale_min, eye_scale_mean;
   // Streaming. Bytes count the whole run, warm-up included.
   std::uint64_t bytes_uploaded = 0;
   std::uint64_t device_bytes_max = 0;

@@ -142,6 +142,7 @@ std::string summary_json(const Ledger& ledger, const RunInfo& info) {
                {"method", info.method},
                {"samples", info.samples},
                {"foveation", info.foveation},
+               {"eye_scale", {{"min", or_null(summary.eye_scale_min)}, {"mean", or_null(summary.eye_scale_mean)}}},
                {"period_ns", summary.period_ns},
                {"frames", summary.frames},
                {"warmup_frames", summary.warmup_frames},

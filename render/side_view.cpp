@@ -1,0 +1,57 @@
+#include "render/side_view.h"
+
+#include <cstring>
+
+#include "render/check.h"
+
+namespace probewalk {
+
+SideView::SideView(const Device& device, const TracerOptions& tracer, VkFormat format)
+    : device_(device),
+      tracer_(device, tracer),
+      resolve_(device, tracer_.radiance(), format),
+      image_(device,
+             {format, tracer.extent_px, 1, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT}),
+      view_(make_layer_view(device, image_.handle(), format, 0)),
+      constants_(device, sizeof(FrameConstants), BufferMemory::kShared) {
+  target_.image = image_.handle();
+  target_.format = format;
+  target_.extent = tracer.extent_px;
+  target_.layers = 1;
+  target_.final_layout = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
+  VkCommandPoolCreateInfo pool{VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO};
+  pool.queueFamilyIndex = device.queue_family();
+  check(vkCreateCommandPool(device.handle(), &pool, nullptr, &pool_), "vkCreateCommandPool");
+  VkCommandBufferAllocateInfo commands{VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO};
+  commands.commandPool = pool_;
+  commands.level = VK_COMMAND_BUFFER_LEVEL_PRIMARY;
+  commands.commandBufferCount = 1;
+  check(vkAllocateCommandBuffers(device.handle(), &commands, &commands_), "vkAllocateCommandBuffers");
+}
+
+SideView::~SideView() {
+  vkDestroyCommandPool(device_.handle(), pool_, nullptr);
+  vkDestroyImageView(device_.handle(), view_, nullptr);
+}
+
+VkCommandBuffer SideView::record(const FrameConstants& constants) {
+  std::memcpy(constants_.mapped(), &constants, sizeof(constants));
+  constants_.flush();
+  check(vkResetCommandPool(device_.handle(), pool_, 0), "vkResetCommandPool");
+  VkCommandBufferBeginInfo begin{VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
+  begin.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
+  check(vkBeginCommandBuffer(commands_, &begin), "vkBeginCommandBuffer");
+  tracer_.record(commands_, constants_.address(), extent());
+  // Whoever copied the last picture comes first.
+  VkImageMemoryBarrier2 copied =
+      colour_barrier(target_.image, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
+  copied.srcStageMask = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT;
+  copied.dstStageMask = VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT;
+  copied.dstAccessMask = VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT;
+  pipeline_barrier(commands_, copied);
+  resolve_.record(commands_, constants_.address(), target_, {&view_, 1});
+  check(vkEndCommandBuffer(commands_), "vkEndCommandBuffer");
+  return commands_;
+}
+
+}  // namespace probewalk

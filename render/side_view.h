@@ -1,0 +1,46 @@
+// One view more, beside those of a frame and from what that frame was drawn from: for who watches, not for the display.
+#pragma once
+
+#include <volk.h>
+
+#include <cstdint>
+
+#include "render/buffer.h"
+#include "render/device.h"
+#include "render/frame_target.h"
+#include "render/gpu_clock.h"
+#include "render/image.h"
+#include "render/resolve.h"
+#include "render/stereo_tracer.h"
+
+namespace probewalk {
+
+class SideView {
+ public:
+  // A picture of one view; `tracer.views` is 1.
+  SideView(const Device& device, const TracerOptions& tracer, VkFormat format);
+  ~SideView();
+  SideView(const SideView&) = delete;
+  SideView& operator=(const SideView&) = delete;
+
+  VkExtent2D extent() const { return tracer_.options().extent_px; }
+  // The picture, left in VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL by what was recorded last.
+  const FrameTarget& target() const { return target_; }
+
+  // For FrameRenderer::submit_beside: the commands that draw a view, while the device does not run the last ones.
+  VkCommandBuffer record(const FrameConstants& constants);
+  const TracerOptions& options() const { return tracer_.options(); }
+
+ private:
+  const Device& device_;
+  StereoTracer tracer_;
+  Resolve resolve_;
+  Image image_;
+  VkImageView view_ = VK_NULL_HANDLE;
+  FrameTarget target_;
+  Buffer constants_;
+  VkCommandPool pool_ = VK_NULL_HANDLE;
+  VkCommandBuffer commands_ = VK_NULL_HANDLE;
+};
+
+}  // namespace probewalk
