@@ -57,7 +57,7 @@ std::string end_of(const LoadResult& load) {
   switch (load.end) {
     case LoadResult::End::kArrived: return {};
     case LoadResult::End::kRefused: return "takes more than the pack states";
-    case LoadResult::End::kCancelled: return "not needed any more";
+    case LoadResult::End::kCancelled: return kNotNeededAnyMore;
     case LoadResult::End::kUnavailable:
     case LoadResult::End::kBad: return load.error;
   }

@@ -131,7 +131,7 @@ Summary Ledger::summary() const {
       ++budgeted;
       within_budget += *q.within_budget ? 1 : 0;
     }
-    if (frame.level_shown >= 0 && frame.level_wanted >= 0) {
+    if (frame.level_wanted >= 0) {  // shown below 0: nothing at all, which is no finer than coarse
       ++levelled;
       coarse += frame.level_shown < frame.level_wanted ? 1 : 0;
     }

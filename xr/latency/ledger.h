@@ -66,7 +66,7 @@ struct Summary {
   // Streaming. Bytes count the whole run, warm-up included.
   std::uint64_t bytes_uploaded = 0;
   std::uint64_t device_bytes_max = 0;
-  std::optional<double> coarse_frame_fraction;  // level_shown < level_wanted
+  std::optional<double> coarse_frame_fraction;  // level_shown < level_wanted, nothing shown included
   std::optional<std::int64_t> frame_thread_p99_ns;
 
   const QuantitySummary& quantity(std::string_view name) const;

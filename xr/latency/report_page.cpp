@@ -11,6 +11,7 @@
 #include "xr/latency/report_charts.h"
 #include "xr/latency/report_style.h"
 #include "xr/latency/report_text.h"
+#include "xr/latency/streaming_section.h"
 
 namespace probewalk {
 namespace {
@@ -210,20 +211,10 @@ const std::vector<Fact>& facts() {
                     ? percent(*r.info.instrumentation_cost_fraction) + " of frame time, from an on/off pair"
                     : std::string("its own cost was not measured in this run");
        }},
-      {"uploaded",
-       [](const Run& r, const Summary& s) {
-         return fmt::format("{}, {} rooms loaded", in_bytes(s.bytes_uploaded), r.info.streaming.rooms_loaded);
-       }},
-      {"device memory",
-       [](const Run& r, const Summary& s) {
-         return fmt::format("at most {} of {}", in_bytes(s.device_bytes_max),
-                            r.info.streaming.device_budget_bytes > 0 ? in_bytes(r.info.streaming.device_budget_bytes)
-                                                                     : std::string("no set budget"));
-       }},
-      {"coarse frames",
-       [](const Run&, const Summary& s) {
-         return s.coarse_frame_fraction ? percent(*s.coarse_frame_fraction) + " shown below the wanted level"
-                                        : std::string();
+      {"device budget",
+       [](const Run& r, const Summary&) {
+         const std::uint64_t bytes = r.info.streaming.device_budget_bytes;
+         return bytes > 0 ? in_bytes(bytes) : std::string("none set");
        }},
   };
   return all;
@@ -296,7 +287,8 @@ std::string run_section(const Run& run, const Summary& summary, const ChartScale
       "<span class=\"key\" style=\"background:var(--gpu)\"></span>GPU busy"
       "<span class=\"key\" style=\"background:var(--missed)\"></span>missed (below), cut off (above)"
       "<span class=\"key\" style=\"background:var(--discarded)\"></span>discarded</p>\n";
-  html += timeline_svg(run.ledger, summary, scale);
+  html += "<div class=\"scroll wide\">" + timeline_svg(run.ledger, summary, scale) + "</div>\n";
+  html += streaming_section(run, summary);
   html += "<h2>Histograms</h2>\n<div class=\"charts\">\n";
   for (const char* name : {"frame", "cpu_busy", "gpu_busy"}) {
     html += histogram_svg(summary.quantity(name), summary.period_ns, scale) + "\n";
@@ -333,6 +325,11 @@ std::string definitions() {
       "discarded "
       "frames.</td></tr>\n"
       "<tr><td>not rendered</td><td class=\"words\">Frames whose should_render was false.</td></tr>\n"
+      "<tr><td>coarse</td><td class=\"words\">Frames shown below the level that the wearer's room was wanted at, or "
+      "not "
+      "at all.</td></tr>\n"
+      "<tr><td>need to resident</td><td class=\"words\">From the frame that first wanted a room's level to its being "
+      "handed to the device; one value a level.</td></tr>\n"
       "<tr><td>warm-up</td><td class=\"words\">The first frames, which load and compile: counted, in frames.csv, in no "
       "statistic.</td></tr>\n</table></div>\n";
   html +=

@@ -26,6 +26,9 @@ struct DeviceFacts {
   bool is_software = false;
 };
 
+// How a load ended that nobody wanted any more before it came: no failure.
+inline constexpr const char* kNotNeededAnyMore = "not needed any more";
+
 // One room's chunk on its way to the device, by one loader thread. CLOCK_MONOTONIC; 0 = it did not come to that.
 struct LevelLoad {
   std::string room;  // its id
