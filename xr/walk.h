@@ -9,7 +9,7 @@
 #include "content/baseline/baseline_maps.h"
 #include "content/baseline/method.h"
 #include "content/progress.h"
-#include "content/stream/chunk_source.h"
+#include "content/stream/open_pack.h"
 #include "content/stream/residency.h"
 #include "xr/display.h"
 #include "xr/latency/ledger.h"

@@ -11,10 +11,11 @@
 
 #include "content/pack/pack_io.h"
 #include "content/progress.h"
+#include "content/stream/open_pack.h"
 #include "content/stream/room_streamer.h"
 #include "render/probe_store.h"
-#include "xr/free_air.h"
 #include "xr/frame_source.h"
+#include "xr/free_air.h"
 #include "xr/latency/frame_record.h"
 #include "xr/latency/run_info.h"
 
