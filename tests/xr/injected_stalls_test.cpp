@@ -11,6 +11,7 @@
 #include <map>
 #include <thread>
 
+#include "content/stream/open_pack.h"
 #include "render/pipeline.h"
 #include "render/spirv.h"
 #include "support/room_pack.h"
@@ -219,7 +220,6 @@ class SlowDisk final : public ChunkSource {
     std::this_thread::sleep_for(by_);
     return whole_->read(level, cancelled);
   }
-  std::string name() const override { return whole_->name(); }
 
  private:
   std::unique_ptr<ChunkSource> whole_;
