@@ -114,7 +114,7 @@ VKAPI_ATTR VkResult VKAPI_CALL stalled_submit(VkQueue queue, std::uint32_t count
 struct Plan {
   std::vector<std::string> stages;
   std::size_t first = 40, spacing = 4, rounds = 5;
-  milliseconds duration{50};
+  milliseconds duration{80};
 
   std::string stage_of(std::size_t frame) const {
     if (frame < first || (frame - first) % spacing != 0) return {};
@@ -318,7 +318,7 @@ TEST(WalkStalls, AreFoundInTheirStageAndNowhereElse) {
   }
   const double noise_ms = ms(at_rank(noise, 0.9));
   const auto injected_ms = static_cast<double>(plan.duration.count());
-  if (noise_ms > 0.6 * injected_ms) GTEST_SKIP() << "other work keeps this machine too busy to time anything on it";
+  if (noise_ms > 0.4 * injected_ms) GTEST_SKIP() << "other work keeps this machine too busy to time anything on it";
   // A stall of ours is timed by ourselves, so that the machine's noise does not count. What the device adds to its own
   // is noise in full: a software device shares the cores with everything else, and begins and goes on when it may.
   constexpr double kTolerance_ms = 1.0;
@@ -361,7 +361,7 @@ TEST(WalkStalls, AreFoundInTheirStageAndNowhereElse) {
                 ms(std::ranges::max(wrong)), named, found.size(), cause.c_str());
     EXPECT_NEAR(ms(median(wrong)), 0.0, tolerance_ms(stage)) << stage;
     EXPECT_GE(ms(std::ranges::min(injected)), injected_ms);
-    EXPECT_LT(ms(median(elsewhere)), kTolerance_ms + noise_ms) << stage;
+    EXPECT_LT(ms(median(elsewhere)), kTolerance_ms + 2.0 * noise_ms) << stage;
     EXPECT_GE(named + 1, found.size()) << stage;  // all, but for one that other work on the machine got between
   }
   // Nothing else is as long: the stalled frames are the worst ones.
