@@ -63,6 +63,7 @@ RunInfo run_info(const WalkOptions& options, const Display& display) {
   info.pack = options.pack.filename().empty() ? options.pack.parent_path().filename() : options.pack.filename();
   info.build = read_build_info();
   info.started_utc = utc_now();
+  info.instrumentation_cost_fraction = options.ledger_cost_fraction;
   return info;
 }
 

@@ -48,7 +48,12 @@ class WalkLeg {
   std::vector<ViewPose> draw(const FrameTiming& timing, FrameRecord& record, std::uint64_t& drawn);
   void write(const std::vector<ViewPose>& views);
   void save_pictures(const FrameTarget& target);
+  // Enters a frame that has ended.
+  void book(FrameRecord& record, std::uint64_t drawn);
   void take_late_answers();
+  // Times `work` where the ledger takes part in the frame under way.
+  template <typename Work>
+  Interval stamped(const Work& work) const;
   void note_arrival();
   bool is_over(const FrameTiming& timing);
 
@@ -66,6 +71,7 @@ class WalkLeg {
   WallFade wall_fade_;
   FrameBook book_;
   std::uint32_t pipelines_built_ = 0;  // before the frame under way
+  bool keeps_books_ = true;            // of the frame under way
   bool screenshot_ = false;
 };
 

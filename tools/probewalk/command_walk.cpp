@@ -15,6 +15,7 @@
 #include "tools/probewalk/method_options.h"
 #include "xr/latency/run_files.h"
 #include "xr/latency/summary_json.h"
+#include "xr/ledger_cost.h"
 #include "xr/walk.h"
 
 namespace probewalk {
@@ -30,7 +31,7 @@ struct WalkArguments {
   std::string path, record, report, pictures, cache;
   std::uint64_t frames = 0;
   double seconds = 0.0;
-  std::uint64_t budget_mib = 0, cache_mib = 0;
+  std::uint64_t budget_mib = 0, cache_mib = 0, ledger_cost_pairs = 0;
   bool settle = false, realtime = false;
   ShownEyes mirror = ShownEyes::kBoth;
   CLI::Option* mirror_option = nullptr;
@@ -60,6 +61,15 @@ void print_ending(const WalkResult& result, const WalkArguments& arguments) {
   if (result.pictures > 0) fmt::print("{} pictures in {}\n", result.pictures, arguments.pictures);
   if (!arguments.record.empty()) fmt::print("path: {}\n", arguments.record);
   if (!arguments.report.empty()) fmt::print("report: {}/index.html\n", arguments.report);
+}
+
+std::string in_words(const LedgerCost& cost) {
+  const auto percent = [](const CostFraction& fraction) {
+    return fmt::format("{:+.2f} % (quartiles {:+.2f} to {:+.2f} %)", 100.0 * fraction.median, 100.0 * fraction.low,
+                       100.0 * fraction.high);
+  };
+  return fmt::format("the ledger's cost, with it against without, {} pairs: {} of frame time, {} of processor time",
+                     cost.pairs, percent(cost.frame_time), percent(cost.cpu_time));
 }
 
 // The exit code of a walk that did not end by itself.
@@ -116,6 +126,11 @@ void run_walk(WalkArguments arguments, const CommonOptions& common) {
     const Pack pack = open_pack(walk_options.pack.string(), [&] { return progress->cancelled(); });
     maps = chosen_maps(walk_options.choice, arguments.method, pack, std::nullopt, common.threads, *progress);
     walk_options.maps = maps.get();
+  }
+  if (arguments.ledger_cost_pairs > 0) {
+    const LedgerCost cost = measure_ledger_cost(walk_options, arguments.ledger_cost_pairs, *progress);
+    progress->note(in_words(cost));
+    walk_options.ledger_cost_fraction = cost.frame_time.median;
   }
   const WalkResult result = walk(walk_options, *progress);
   if (common.json) {
@@ -179,6 +194,11 @@ void add_walk_command(CLI::App& app, CommonOptions& common) {
   command->add_option("--cache-limit", arguments->cache_mib, "MiB that they may take there (default: 8192)")
       ->check(CLI::Range(1ull, 1ull << 24));
   command->add_option("--report", arguments->report, "Write frames.csv, summary.json, trace.json and index.html here");
+  command->add_option("--ledger-cost", arguments->ledger_cost_pairs,
+                      "First measure, offscreen, what the ledger itself costs: this many times 16 frames with it and 16\n"
+                      "without (20 is a start); the report states it")
+      ->check(CLI::Range(4ull, 10000ull))
+      ->option_text("PAIRS");
   const std::map<std::string, ShownEyes> eyes{
       {"both", ShownEyes::kBoth}, {"left", ShownEyes::kLeft}, {"right", ShownEyes::kRight}, {"off", ShownEyes::kNone}};
   arguments->mirror_option =

@@ -190,9 +190,8 @@ SummaryHead parse_summary_json(std::string_view text, const std::string& file) {
   if (json.contains("foveation")) take(json, "foveation", info.foveation, file);
   take(json, "warmup_frames", head.options.warmup_frames, file);
   take(json, "has_deadlines", head.options.has_deadlines, file);
-  if (double cost = -1.0; json.contains("instrumentation_cost_fraction")) {
-    take(json, "instrumentation_cost_fraction", cost, file);
-    if (cost >= 0.0) info.instrumentation_cost_fraction = cost;
+  if (const auto cost = json.find("instrumentation_cost_fraction"); cost != json.end() && !cost->is_null()) {
+    take(json, "instrumentation_cost_fraction", info.instrumentation_cost_fraction.emplace(), file);
   }
   const Json machine = object_in(json, "machine");
   info.machine = {};
