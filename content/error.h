@@ -29,6 +29,10 @@ class Error : public std::runtime_error {
 struct BadInput : Error {
   explicit BadInput(const std::string& message) : Error(ExitCode::kBadInput, message) {}
 };
+// A file elsewhere that did not come this time: the server is busy, gone or stalls. It may be otherwise later.
+struct Unavailable : Error {
+  explicit Unavailable(const std::string& message) : Error(ExitCode::kBadInput, message) {}
+};
 struct BadUsage : Error {
   explicit BadUsage(const std::string& message) : Error(ExitCode::kBadUsage, message) {}
 };

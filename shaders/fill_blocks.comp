@@ -49,7 +49,7 @@ void main() {
   vec3 lower = mix(shown_at(frame, view_index, ivec2(low.x, high.y), exposure),
                    shown_at(frame, view_index, high, exposure), share.x);
   vec3 radiance = tone_curve_inverse(mix(upper, lower, share.y)) / exposure;
-  imageStore(radiance_image, ivec3(pixel, view_index), vec4(min(radiance, vec3(65504.0)), 1.0));
+  imageStore(radiance_image, ivec3(pixel, view_index), vec4(min(radiance, vec3(kPictureMax)), 1.0));
   // Distances are not mixed: between two surfaces there is nothing.
   imageStore(distance_image, ivec3(pixel, view_index), imageLoad(distance_image, ivec3(keeper, view_index)));
   if (kWithAov) {

@@ -27,8 +27,6 @@ layout(push_constant) uniform Push {
   uvec2 list_address;
 };
 
-const float kHalfMax = 65504.0;
-
 // Where the extra rays leave their pixel, from its centre. Least mean square error of the area that straight edges of
 // any direction and place cut off, given that the centre is one of the points: 0.19 of a pixel with 2 (0.24 with the
 // centre alone), 0.091 with 4 (four free points on a turned square: 0.092).
@@ -73,7 +71,7 @@ void main() {
     }
     // The radiance that is shown like this: the resolve applies the curve again.
     vec3 radiance = tone_curve_inverse(shown) / exposure;
-    imageStore(radiance_image, texel, vec4(min(radiance, vec3(kHalfMax)), 1.0));
+    imageStore(radiance_image, texel, vec4(min(radiance, vec3(kPictureMax)), 1.0));
     if (kWithAov) {
       uvec4 aov = imageLoad(aov_image, texel);
       aov.z += counts.x;

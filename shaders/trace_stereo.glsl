@@ -20,9 +20,6 @@ layout(binding = 2, rgba32ui) writeonly uniform uimage2DArray aov_image;
 layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer Frame { FrameConstants constants; };
 layout(push_constant) uniform Push { uvec2 frame_address; };
 
-// Largest half float; radiance is stored times radiance_scale, so that only a source brighter than any texel meets it.
-const float kHalfMax = 65504.0;
-
 void main() {
   Frame frame = Frame(frame_address);
   int rows = int(gl_NumWorkGroups.y), row = int(gl_WorkGroupID.z) * rows + int(gl_WorkGroupID.y);
@@ -49,7 +46,7 @@ void main() {
                                     view.pixel_angle_rad * float(rate), reads);
 
   ivec3 texel = ivec3(block_keeper(pixel, rate, size_px), view_index);
-  imageStore(radiance_image, texel, vec4(min(radiance * dials.radiance_scale, vec3(kHalfMax)), 1.0));
+  imageStore(radiance_image, texel, vec4(min(radiance * dials.radiance_scale, vec3(kPictureMax)), 1.0));
   imageStore(distance_image, texel, vec4(answer.t));
   if (kWithAov) {
     imageStore(aov_image, texel,

@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "content/error.h"
-#include "content/stream/open_pack.h"
 #include "xr/headset_watch.h"
 #include "xr/latency/clock.h"
 #include "xr/latency/run_files.h"
@@ -192,8 +191,8 @@ void Walk::go_back_to_headset() {
   watch_.reset();
   leave_display("the headset is there again");
   try {
-    display_ = std::make_unique<Display>(
-        open_headset(options_.display, pack_.manifest().floor, here(), std::move(runtime)));
+    display_ =
+        std::make_unique<Display>(open_headset(options_.display, pack_.manifest().floor, here(), std::move(runtime)));
   } catch (const NoDevice& error) {
     // Gone once more before it could be used.
     spdlog::warn("the headset answered but cannot be used: {}", error.what());
@@ -220,7 +219,7 @@ void Walk::save() {
 }  // namespace
 
 WalkResult walk(const WalkOptions& options, Progress& progress) {
-  const Pack pack = open_pack(options.pack.string());
+  const Pack pack = open_pack(options.pack.string(), [&] { return progress.cancelled(); });
   return Walk(options, pack, progress).run();
 }
 

@@ -9,11 +9,12 @@
 #include "content/baseline/baseline_maps.h"
 #include "content/baseline/method.h"
 #include "content/progress.h"
-#include "content/stream/chunk_source.h"
+#include "content/stream/open_pack.h"
 #include "content/stream/residency.h"
 #include "xr/display.h"
 #include "xr/latency/ledger.h"
 #include "xr/latency/run_info.h"
+#include "xr/walk_rooms.h"
 
 namespace probewalk {
 
@@ -38,6 +39,7 @@ struct WalkOptions {
   std::optional<double> exposure_ev;             // default: the pack's
   std::string command;                           // the words that repeat the walk, for the report
   DisplayOpener open_display;                    // how the first display is opened; empty = probewalk::open_display
+  ChunkOpener open_chunks;                       // where the pack's chunks come from; empty = probewalk::open_source
 };
 
 struct WalkResult {

@@ -7,17 +7,21 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <string>
 
 #include "content/pack/pack_io.h"
 #include "content/progress.h"
+#include "content/stream/open_pack.h"
 #include "content/stream/room_streamer.h"
 #include "render/probe_store.h"
-#include "xr/free_air.h"
 #include "xr/frame_source.h"
+#include "xr/free_air.h"
 #include "xr/latency/frame_record.h"
 #include "xr/latency/run_info.h"
 
 namespace probewalk {
+
+using ChunkOpener = std::function<std::unique_ptr<ChunkSource>(const std::string& pack, const CacheOptions& cache)>;
 
 struct WalkRoomsOptions {
   std::uint64_t budget_bytes = kUnlimitedBudget;
@@ -25,6 +29,7 @@ struct WalkRoomsOptions {
   CacheOptions cache;        // of a pack on a web server
   bool keep_loads = false;   // for a report: facts() lists them
   bool fade_levels = false;  // a finer level takes over gradually
+  ChunkOpener open_chunks;   // empty = open_source
 };
 
 class WalkRooms {

@@ -6,15 +6,11 @@
 
 #include "content/baseline/baseline_f32.h"
 #include "content/probe/device_probe.h"
+#include "content/probe/host_address.h"
 #include "content/probe/tracer_f32.h"
 
 namespace probewalk {
 namespace {
-
-glm::uvec2 host_address(const void* memory) {
-  const auto bits = static_cast<std::uint64_t>(reinterpret_cast<std::uintptr_t>(memory));
-  return {static_cast<std::uint32_t>(bits), static_cast<std::uint32_t>(bits >> 32)};
-}
 
 template <class Answer>
 BatchAnswer to_batch_answer(const Answer& answer, glm::vec3 radiance, unsigned reads) {
@@ -46,8 +42,8 @@ HostTracer::HostTracer(const ProbeSet& probes, const TraceConstants& dials, cons
     : probes_(probes), dials_(with_choice(dials, choice)), choice_(choice) {
   if (!choice.needs_maps()) maps = nullptr;
   if (choice.needs_maps() && (maps == nullptr || maps->probes.size() != probes.records().size())) {
-    throw std::logic_error(fmt::format("method {} needs a map for each of {} probes", name_of(choice),
-                                       probes.records().size()));
+    throw std::logic_error(
+        fmt::format("method {} needs a map for each of {} probes", name_of(choice), probes.records().size()));
   }
   context_ = baseline_context(choice, maps);
   if (maps == nullptr) return;
@@ -73,8 +69,8 @@ BatchAnswer HostTracer::trace(glm::dvec3 origin_m, glm::dvec3 direction, float s
   }
   const baseline_f32::RayAnswer answer =
       baseline_f32::trace_ray(context_, probes_.grid(), dials_, choice_.rules, hi, lo, d, choice_.start_level());
-  const glm::vec3 radiance = baseline_f32::baseline_radiance(choice_.method, probes_.grid(), dials_, answer, hi, lo, d,
-                                                             spread_rad, reads);
+  const glm::vec3 radiance =
+      baseline_f32::baseline_radiance(choice_.method, probes_.grid(), dials_, answer, hi, lo, d, spread_rad, reads);
   return to_batch_answer(answer, radiance, reads);
 }
 

@@ -14,6 +14,7 @@
 #include "content/baseline/host_tracer.h"
 #include "content/baseline/probe_ordering.h"
 #include "content/error.h"
+#include "content/probe/host_address.h"
 #include "content/probe/tracer_f32.h"
 
 namespace probewalk {
@@ -22,11 +23,6 @@ namespace {
 constexpr int kRadianceSide = 8;
 // Of a ray's filter, which nothing here looks at.
 constexpr float kSpread_rad = 1e-3f;
-
-glm::uvec2 host_address(const void* memory) {
-  const auto bits = static_cast<std::uint64_t>(reinterpret_cast<std::uintptr_t>(memory));
-  return {static_cast<std::uint32_t>(bits), static_cast<std::uint32_t>(bits >> 32)};
-}
 
 std::vector<BaselineRecord> records_in_memory(const BaselineMaps& maps) {
   std::vector<BaselineRecord> records;

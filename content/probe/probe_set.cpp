@@ -3,16 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "content/probe/host_address.h"
+
 namespace probewalk {
-
-namespace {
-
-glm::uvec2 host_address(const void* memory) {
-  const auto bits = static_cast<std::uint64_t>(reinterpret_cast<std::uintptr_t>(memory));
-  return {static_cast<std::uint32_t>(bits), static_cast<std::uint32_t>(bits >> 32)};
-}
-
-}  // namespace
 
 GridConstants grid_constants(const ProbeGrid& grid, std::size_t probe_count) {
   GridConstants constants{};
@@ -26,7 +19,10 @@ GridConstants grid_constants(const ProbeGrid& grid, std::size_t probe_count) {
 }
 
 TraceConstants default_dials(double radiance_scale) {
-  return {.distance_weight = 1.0f, .start_margin = 0.02f, .max_tries = 12, .radiance_scale = static_cast<float>(radiance_scale)};
+  return {.distance_weight = 1.0f,
+          .start_margin = 0.02f,
+          .max_tries = 12,
+          .radiance_scale = static_cast<float>(radiance_scale)};
 }
 
 ProbeSet::ProbeSet(std::vector<DeviceProbe> probes, const ProbeGrid& grid)

@@ -19,7 +19,7 @@ struct Transfer {
   CURL* handle = nullptr;
   std::vector<std::byte>& body;
   std::uint64_t limit_bytes = 0;
-  const std::atomic<bool>& cancelled;
+  const std::function<bool()>& cancelled;
   std::size_t resumed_at = 0;
   bool is_first_piece = true;
   bool is_too_long = false;
@@ -28,18 +28,13 @@ struct Transfer {
 std::size_t on_data(char* data, std::size_t size, std::size_t count, void* user) {
   Transfer& transfer = *static_cast<Transfer*>(user);
   const std::size_t bytes = size * count;
-  if (transfer.is_first_piece) {
-    transfer.is_first_piece = false;
-    long status = 0;
-    curl_easy_getinfo(transfer.handle, CURLINFO_RESPONSE_CODE, &status);
-    // The words of an error page are not the file.
-    if (status != 200 && status != 206) return bytes;
-    // A server that knows no ranges sends everything again.
-    if (status == 200) transfer.body.clear();
-  }
   long status = 0;
   curl_easy_getinfo(transfer.handle, CURLINFO_RESPONSE_CODE, &status);
+  // The words of an error page are not the file.
   if (status != 200 && status != 206) return bytes;
+  // A server that knows no ranges sends everything again.
+  if (transfer.is_first_piece && status == 200) transfer.body.clear();
+  transfer.is_first_piece = false;
   if (bytes > transfer.limit_bytes - transfer.body.size()) {
     transfer.is_too_long = true;
     return CURL_WRITEFUNC_ERROR;
@@ -50,7 +45,7 @@ std::size_t on_data(char* data, std::size_t size, std::size_t count, void* user)
 }
 
 int on_progress(void* user, curl_off_t, curl_off_t, curl_off_t, curl_off_t) {
-  return static_cast<const Transfer*>(user)->cancelled.load(std::memory_order_relaxed) ? 1 : 0;
+  return static_cast<const Transfer*>(user)->cancelled() ? 1 : 0;
 }
 
 void check(CURLcode code, const char* option) {
@@ -58,9 +53,9 @@ void check(CURLcode code, const char* option) {
 }
 
 // Seconds in small steps, so that a cancellation is heard.
-void pause(double seconds, const std::atomic<bool>& cancelled) {
+void pause(double seconds, const std::function<bool()>& cancelled) {
   const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
-  while (std::chrono::steady_clock::now() < end && !cancelled.load(std::memory_order_relaxed)) {
+  while (std::chrono::steady_clock::now() < end && !cancelled()) {
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
 }
@@ -129,18 +124,18 @@ HttpFetcher::HttpFetcher(const FetchLimits& limits) : impl_(std::make_unique<Imp
 HttpFetcher::~HttpFetcher() = default;
 
 std::vector<std::byte> HttpFetcher::get(const std::string& url, std::uint64_t limit_bytes,
-                                        const std::atomic<bool>& cancelled) const {
+                                        const std::function<bool()>& cancelled) const {
   std::vector<std::byte> body;
   Handle handle = impl_->take();
   std::string reason;
   for (int attempt = 0; attempt < impl_->limits.attempts; ++attempt) {
     if (attempt > 0) pause(impl_->limits.first_pause_s * static_cast<double>(1 << (attempt - 1)), cancelled);
-    if (cancelled.load(std::memory_order_relaxed)) throw Interrupted(url + ": not wanted any more");
+    if (cancelled()) throw Interrupted(url + ": not wanted any more");
     Transfer transfer{handle.get(), body, limit_bytes, cancelled, body.size()};
     const CURLcode code = impl_->attempt(handle.get(), url, transfer);
     long status = 0;
     curl_easy_getinfo(handle.get(), CURLINFO_RESPONSE_CODE, &status);
-    if (cancelled.load(std::memory_order_relaxed)) throw Interrupted(url + ": not wanted any more");
+    if (cancelled()) throw Interrupted(url + ": not wanted any more");
     if (transfer.is_too_long) {
       throw BadInput(fmt::format("{}: is longer than the {} bytes that it should have at most", url, limit_bytes));
     }
@@ -156,7 +151,12 @@ std::vector<std::byte> HttpFetcher::get(const std::string& url, std::uint64_t li
     if (code == CURLE_URL_MALFORMAT || code == CURLE_UNSUPPORTED_PROTOCOL)
       throw BadInput(fmt::format("{}: {}", url, reason));
   }
-  throw BadInput(fmt::format("{}: {}, {} times in a row", url, reason, impl_->limits.attempts));
+  throw Unavailable(fmt::format("{}: {}, {} times in a row", url, reason, impl_->limits.attempts));
+}
+
+std::string without_slash(std::string url) {
+  while (url.ends_with('/')) url.pop_back();
+  return url;
 }
 
 bool is_http_url(const std::string& text) {

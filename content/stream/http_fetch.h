@@ -2,7 +2,6 @@
 // nobody wants it any more.
 #pragma once
 
-#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -27,11 +26,11 @@ class HttpFetcher {
   HttpFetcher(const HttpFetcher&) = delete;
   HttpFetcher& operator=(const HttpFetcher&) = delete;
 
-  // The whole body; at most limit_bytes of it are ever held. Throws BadInput naming the address and what happened: at
-  // once where trying again is no use (404 and its like, an answer that is too long), else after the last attempt.
-  // Throws Interrupted soon after `cancelled` turns true.
+  // The whole body; at most limit_bytes of it are ever held. Throws BadInput at once where trying again is no use (404
+  // and its like, an answer that is too long), Unavailable after the last attempt, both naming the address and what
+  // happened; Interrupted soon after `cancelled`, which is asked often, says true.
   std::vector<std::byte> get(const std::string& url, std::uint64_t limit_bytes,
-                             const std::atomic<bool>& cancelled) const;
+                             const std::function<bool()>& cancelled) const;
 
  private:
   struct Impl;
@@ -39,5 +38,7 @@ class HttpFetcher {
 };
 
 bool is_http_url(const std::string& text);
+// The address of a folder, as names can be hung on to it.
+std::string without_slash(std::string url);
 
 }  // namespace probewalk

@@ -43,41 +43,31 @@ constexpr std::size_t kStepsAThought = 6;
 
 }  // namespace
 
-NeighbourPolicy::NeighbourPolicy(const Manifest& manifest, const ResidencyOptions& options)
-    : graph_(manifest.rooms, manifest.portals), options_(options), planner_(options.budget_bytes, options.most_loads) {}
+PlainPolicy::PlainPolicy(PlainRule rule, const Manifest& manifest, const ResidencyOptions& options)
+    : rule_(rule),
+      graph_(manifest.rooms, manifest.portals),
+      options_(options),
+      planner_(options.budget_bytes, options.most_loads) {}
 
-ResidencyDecision NeighbourPolicy::decide(const Walker& walker, const LevelBook& book, std::uint64_t retired_bytes) {
+ResidencyDecision PlainPolicy::decide(const Walker& walker, const LevelBook& book, std::uint64_t retired_bytes) {
   ResidencyDecision decision;
   if (book.rooms() == 0) return decision;
   room_ = decision.room = graph_.room_of(walker.head_m, room_, options_.doorway_margin_m);
   Purse purse(book, options_.budget_bytes);
   const auto reach = graph_.reach(decision.room, walker.head_m, options_.coarse_portals);
   for (const RoomGraph::Reach& r : reach) purse.take_coarse(r.room);
-  for (const RoomGraph::Reach& r : reach) {
-    if (r.portals <= 1) purse.take_finest(r.room);
+  if (rule_ == PlainRule::kNeighbours) {
+    for (const RoomGraph::Reach& r : reach) {
+      if (r.portals <= 1) purse.take_finest(r.room);
+    }
+  } else {
+    auto seen = graph_.seen(decision.room, walker.head_m, walker.look);
+    std::erase_if(seen, [](const RoomGraph::Seen& s) { return !s.in_view; });
+    std::sort(seen.begin(), seen.end(), [](const RoomGraph::Seen& a, const RoomGraph::Seen& b) {
+      return std::tuple(a.portals > 0, -a.share, a.room) < std::tuple(b.portals > 0, -b.share, b.room);
+    });
+    for (const RoomGraph::Seen& s : seen) purse.take_finest(s.room);
   }
-  decision.wanted = std::move(purse.wanted);
-  planner_.plan(decision, book, retired_bytes);
-  return decision;
-}
-
-LruPolicy::LruPolicy(const Manifest& manifest, const ResidencyOptions& options)
-    : graph_(manifest.rooms, manifest.portals), options_(options), planner_(options.budget_bytes, options.most_loads) {}
-
-ResidencyDecision LruPolicy::decide(const Walker& walker, const LevelBook& book, std::uint64_t retired_bytes) {
-  ResidencyDecision decision;
-  if (book.rooms() == 0) return decision;
-  room_ = decision.room = graph_.room_of(walker.head_m, room_, options_.doorway_margin_m);
-  Purse purse(book, options_.budget_bytes);
-  for (const RoomGraph::Reach& r : graph_.reach(decision.room, walker.head_m, options_.coarse_portals)) {
-    purse.take_coarse(r.room);
-  }
-  auto seen = graph_.seen(decision.room, walker.head_m, walker.look);
-  std::erase_if(seen, [](const RoomGraph::Seen& s) { return !s.in_view; });
-  std::sort(seen.begin(), seen.end(), [](const RoomGraph::Seen& a, const RoomGraph::Seen& b) {
-    return std::tuple(a.portals > 0, -a.share, a.room) < std::tuple(b.portals > 0, -b.share, b.room);
-  });
-  for (const RoomGraph::Seen& s : seen) purse.take_finest(s.room);
   decision.wanted = std::move(purse.wanted);
   planner_.plan(decision, book, retired_bytes);
   return decision;

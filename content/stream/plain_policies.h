@@ -10,27 +10,19 @@
 
 namespace probewalk {
 
-// Loads the walker's room and all rooms beside it, nearest first, each at the finest level that fits.
-class NeighbourPolicy final : public StreamingPolicy {
- public:
-  NeighbourPolicy(const Manifest& manifest, const ResidencyOptions& options);
-  ResidencyDecision decide(const Walker& walker, const LevelBook& book, std::uint64_t retired_bytes) override;
-
- private:
-  RoomGraph graph_;
-  ResidencyOptions options_;
-  ResidencyPlanner planner_;
-  std::int64_t room_ = -1;
+enum class PlainRule {
+  kNeighbours,  // the walker's room and all beside it, nearest first, each at the finest level that fits
+  kInSight,  // LRU: what is looked at, when it is: the walker's room, then what shows through portals; what was looked
+             // at longest ago goes first
 };
 
-// Loads what is looked at, when it is looked at: the walker's room, then what shows through portals. What was looked at
-// longest ago goes first.
-class LruPolicy final : public StreamingPolicy {
+class PlainPolicy final : public StreamingPolicy {
  public:
-  LruPolicy(const Manifest& manifest, const ResidencyOptions& options);
+  PlainPolicy(PlainRule rule, const Manifest& manifest, const ResidencyOptions& options);
   ResidencyDecision decide(const Walker& walker, const LevelBook& book, std::uint64_t retired_bytes) override;
 
  private:
+  PlainRule rule_;
   RoomGraph graph_;
   ResidencyOptions options_;
   ResidencyPlanner planner_;

@@ -256,11 +256,11 @@ SimulationResult simulate_policy(const std::string& policy, const Manifest& mani
     return simulate(manifest, walk, views, residency, options);
   }
   if (policy == "neighbours") {
-    NeighbourPolicy neighbours(manifest, options.residency);
+    PlainPolicy neighbours(PlainRule::kNeighbours, manifest, options.residency);
     return simulate(manifest, walk, views, neighbours, options);
   }
   if (policy == "lru") {
-    LruPolicy lru(manifest, options.residency);
+    PlainPolicy lru(PlainRule::kInSight, manifest, options.residency);
     return simulate(manifest, walk, views, lru, options);
   }
   if (policy != "oracle") {

@@ -5,13 +5,16 @@
 //   (n+1)^2            w at the vertices, row-major, float bits; exactly 0 = sky
 //   (padding)          up to a multiple of 8 words
 //   pyramid            levels 1, 3, 5 .. up to n_log2-3, level l has (n >> l)^2 entries of 16 bits, in nodes of 4 x 4
-//                      entries (8 words, so that one read of 32 aligned bytes serves two levels of a binary pyramid); nodes
-//                      row-major, entries row-major in their node, the even one in the low half. An entry stands for
-//                      2^l x 2^l cells:
-//                        bits 0..14  code of the maximum of w over it, rounded up (pyramid_code), cut cells counted with
+//                      entries (8 words, so that one read of 32 aligned bytes serves two levels of a binary pyramid);
+//                      nodes row-major, entries row-major in their node, the even one in the low half. An entry stands
+//                      for 2^l x 2^l cells:
+//                        bits 0..14  code of the maximum of w over it, rounded up (pyramid_code), cut cells counted
+//                        with
 //                                    their extension (1 + 2 kSlopeClamp); 0 = nothing but sky
-//                        bit 15      planar: no cut, and w at all its vertices lies within kPlanarTolerance of the plane
-//                                    through its corners next to the map's centre: the ray meets that instead of the cells
+//                        bit 15      planar: no cut, and w at all its vertices lies within kPlanarTolerance of the
+//                        plane
+//                                    through its corners next to the map's centre: the ray meets that instead of the
+//                                    cells
 //   n^2/32 * 2         per 32 cells: mask of cells with a cut, number of such cells before
 //   8 per cut cell     cut record, quadrant-local (cell corner nearest the map's centre is (0, 0)):
 //     [0] fractions, 6 bits each: (0,0)-(1,0), (0,0)-(0,1), (1,0)-(0,1), (1,0)-(1,1), (0,1)-(1,1)
@@ -39,10 +42,13 @@ PW_CONSTANT float kSlopeStep = 1.52592547e-6f;
 PW_CONSTANT float kCutExtension = 1.1001f;
 // Highest level of the pyramid that a walk looks at (odd).
 PW_CONSTANT int kStartLevel = 5;
-// Added to a walk's level: planar entries are gone through cell by cell all the same, which gives the very bits of a walk
-// without a pyramid.
+// Added to a walk's level: planar entries are gone through cell by cell all the same, which gives the very bits of a
+// walk without a pyramid.
 PW_CONSTANT int kWithoutPlanes = 16;
 PW_CONSTANT int kCutRecordWords = 8;
+// Largest half float, which pictures are made of. Radiance is stored times radiance_scale, so that only a source
+// brighter than any texel meets it.
+PW_CONSTANT float kPictureMax = 65504.0f;
 // Relative to w. Beyond what floats hold of it, so that walls are planar.
 PW_CONSTANT float kPlanarTolerance = 2e-6f;
 // By how much of itself a distance may change when one plane stands for many cells; where a ray comes so flatly that it
@@ -69,7 +75,8 @@ struct ProbeRecord {
   pw_uint flags;                     // bit 0: has cuts; bits 16..31: coarse_share, in 1/65535 of the radiance
 };
 
-// The building's probe grid: vertex (x, y, z) at origin + spacing * (x, y, z) is served by probe table[(z dy + y) dx + x].
+// The building's probe grid: vertex (x, y, z) at origin + spacing * (x, y, z) is served by probe table[(z dy + y) dx +
+// x].
 struct GridConstants {
   pw_vec3 origin_m;
   float spacing_mean_m;  // geometric mean of the three spacings
@@ -94,7 +101,8 @@ struct ViewConstants {
   pw_vec3 origin_hi_m;
   float pixel_angle_rad;  // angular width of the centre pixel
   pw_vec3 origin_lo_m;
-  float choice_shift_m;  // along the eye's x axis to where its rays' probes are chosen (SelectionRules): the head's middle
+  float choice_shift_m;      // along the eye's x axis to where its rays' probes are chosen (SelectionRules): the head's
+                             // middle
   pw_vec4 world_from_eye_x;  // columns of the rotation
   pw_vec4 world_from_eye_y;
   pw_vec4 world_from_eye_z;
@@ -116,8 +124,8 @@ struct FrameConstants {
   float far_m;
   ViewConstants view[4];
   pw_uvec2 baseline_address;  // of BaselineConstants, for trace_stereo_baseline.comp and sample_edges_baseline.comp
-  // Rays at an angle from the view's axis of at least this cosine are one a pixel; at least the next, one of 2 x 2 pixels;
-  // the rest one of 4 x 4 (foveation.h). Without foveation both are 0.
+  // Rays at an angle from the view's axis of at least this cosine are one a pixel; at least the next, one of 2 x 2
+  // pixels; the rest one of 4 x 4 (foveation.h). Without foveation both are 0.
   float full_rate_cosine;
   float half_rate_cosine;
 };

@@ -1,5 +1,6 @@
 // One ray against one probe: the octant-affine walk. Compiled as GLSL, as C++ float and as C++ double; whoever includes
-// it provides `real`, `real2`, `real3` and the memory access of tracer.h. No include guard: C++ includes it once a type.
+// it provides `real`, `real2`, `real3` and the memory access of tracer.h. No include guard: C++ includes it once a
+// type.
 //
 // In each octant around the probe every plane of the world is affine in the map's coordinates (U, V), and a ray is a
 // straight line there whose own w = 1 / L1 distance is affine along it. So each triangle of the vertex grid is a planar
@@ -7,12 +8,12 @@
 //
 // What the walk guarantees on any data: it ends (every step moves on by at least one cell), it forms no NaN and no
 // infinity from finite rays and says "unknown" to others, and with the pyramid it visits the same surfaces as without,
-// bit for bit; with its planes, too, within the tolerance that makes them planes.
+// bit for bit; with its planes the class of the answer stays and its distance moves by less than kPlaneError of itself.
 #include "tracer_pieces.h"
 #include "tracer_pyramid.h"
 
-// Sizes of what can be walked: origins up to here from the probe, directions no longer and no shorter than these. Beyond
-// them sums and reciprocals might not be finite.
+// Sizes of what can be walked: origins up to here from the probe, directions no longer and no shorter than these.
+// Beyond them sums and reciprocals might not be finite.
 #define PW_GREATEST_M real(1e15)
 #define PW_LONGEST real(1e6)
 #define PW_SHORTEST real(1e-6)
@@ -43,8 +44,8 @@ PW_FUNCTION bool walk_segment(ProbeRecord probe, OctantSegment s, real t_start, 
   top = top < 1 ? 0 : ((top - 1) | 1);
   const real way = max(abs(s.d_uv.x), abs(s.d_uv.y));
   while (top > 1 && real(1 << top) > way) top -= 2;
-  // A segment that moves by less than a cell, a ray's that runs (almost) straight away from the probe, meets three cells
-  // at most, mostly one: looking at nodes first would only add to that (thesis 4.3: one look-up).
+  // A segment that moves by less than a cell, a ray's that runs (almost) straight away from the probe, meets three
+  // cells at most, mostly one: looking at nodes first would only add to that (thesis 4.3: one look-up).
   if (way < real(1)) top = 0;
 
   int level = top, node_read = -1;
@@ -55,15 +56,15 @@ PW_FUNCTION bool walk_segment(ProbeRecord probe, OctantSegment s, real t_start, 
     // On to the next cell or planar entry that the ray comes down to. Rays that are walked side by side go through this
     // loop first and what they have found then together: it is many times as long.
     bool planar = false;
-    int record = -1;
+    int record = -1;  // of the cell's cuts
     real w00 = real(0), w10 = real(0), w01 = real(0), w11 = real(0);
     real2 corner_uv = real2(0, 0);
     for (;;) {
       if (passed) {
         if (last) return false;
         // Step over the exit line. The other coordinate's cell is decided by the same comparisons of line parameters as
-        // a cell-by-cell walk would make, so that skipping nodes changes nothing: lines passed strictly before an x exit,
-        // before or at a y exit.
+        // a cell-by-cell walk would make, so that skipping nodes changes nothing: lines passed strictly before an x
+        // exit, before or at a y exit.
         int old_x = ix, old_y = iy;
         if (leave_x) {
           ix = step_x > 0 ? line_x : line_x - 1;
@@ -72,11 +73,15 @@ PW_FUNCTION bool walk_segment(ProbeRecord probe, OctantSegment s, real t_start, 
             int low = step_y > 0 ? iy : line_y, high = step_y > 0 ? line_y - 1 : iy;
             guess = min(max(guess, low), high);
             if (step_y > 0) {
-              if (guess < high && (real(guess + 1) - s.uv0.y) * per_v < crossing) ++guess;
-              else if (guess > low && !((real(guess) - s.uv0.y) * per_v < crossing)) --guess;
+              if (guess < high && (real(guess + 1) - s.uv0.y) * per_v < crossing)
+                ++guess;
+              else if (guess > low && !((real(guess) - s.uv0.y) * per_v < crossing))
+                --guess;
             } else {
-              if (guess > low && (real(guess) - s.uv0.y) * per_v < crossing) --guess;
-              else if (guess < high && !((real(guess + 1) - s.uv0.y) * per_v < crossing)) ++guess;
+              if (guess > low && (real(guess) - s.uv0.y) * per_v < crossing)
+                --guess;
+              else if (guess < high && !((real(guess + 1) - s.uv0.y) * per_v < crossing))
+                ++guess;
             }
             iy = guess;
           }
@@ -87,11 +92,15 @@ PW_FUNCTION bool walk_segment(ProbeRecord probe, OctantSegment s, real t_start, 
             int low = step_x > 0 ? ix : line_x, high = step_x > 0 ? line_x - 1 : ix;
             guess = min(max(guess, low), high);
             if (step_x > 0) {
-              if (guess < high && (real(guess + 1) - s.uv0.x) * per_u <= crossing) ++guess;
-              else if (guess > low && !((real(guess) - s.uv0.x) * per_u <= crossing)) --guess;
+              if (guess < high && (real(guess + 1) - s.uv0.x) * per_u <= crossing)
+                ++guess;
+              else if (guess > low && !((real(guess) - s.uv0.x) * per_u <= crossing))
+                --guess;
             } else {
-              if (guess > low && (real(guess) - s.uv0.x) * per_u <= crossing) --guess;
-              else if (guess < high && !((real(guess + 1) - s.uv0.x) * per_u <= crossing)) ++guess;
+              if (guess > low && (real(guess) - s.uv0.x) * per_u <= crossing)
+                --guess;
+              else if (guess < high && !((real(guess + 1) - s.uv0.x) * per_u <= crossing))
+                ++guess;
             }
             ix = guess;
           }
@@ -99,7 +108,8 @@ PW_FUNCTION bool walk_segment(ProbeRecord probe, OctantSegment s, real t_start, 
         if (ix < 0 || iy < 0 || ix >= half_n || iy >= half_n) return false;
         lambda = exit;
         w_in = w_out;
-        if (level < top && (((ix ^ old_x) | (iy ^ old_y)) >> (level == 0 ? 1 : level + 2)) != 0) level = (level + 1) | 1;
+        if (level < top && (((ix ^ old_x) | (iy ^ old_y)) >> (level == 0 ? 1 : level + 2)) != 0)
+          level = (level + 1) | 1;
       }
       // The node's far lines and where the ray leaves it.
       line_x = ((ix >> level) + (step_x > 0 ? 1 : 0)) << level;
@@ -135,6 +145,7 @@ PW_FUNCTION bool walk_segment(ProbeRecord probe, OctantSegment s, real t_start, 
         state.lookups += 1u;
         real maximum = max(max(w00, w10), max(w01, w11));
         passed = maximum <= real(0) || w_low > maximum * real(kCutExtension);
+        record = -1;
         if (!passed) {
           if ((probe.flags & 1u) != 0u) {
             int cell = gy * n + gx;
@@ -147,8 +158,8 @@ PW_FUNCTION bool walk_segment(ProbeRecord probe, OctantSegment s, real t_start, 
           }
           passed = record < 0 && w_low > maximum;
         }
-        // By rounding only: on the fold the ray is in a cell of the octant that it comes from or goes to, which here says
-        // nothing.
+        // By rounding only: on the fold the ray is in a cell of the octant that it comes from or goes to, which here
+        // says nothing.
         int past_fold = ix + iy + 1 - half_n;
         if (!passed && (s.upper ? past_fold > 0 : past_fold < 0)) {
           passed = true;
@@ -186,8 +197,8 @@ PW_FUNCTION bool walk_segment(ProbeRecord probe, OctantSegment s, real t_start, 
       }
       ended = ends_walk(state.known, m);
     } else {
-      // Entry and exit in the cell's unit square; the cell's diagonal x + y = 1 parts low from high triangle. On the fold
-      // each of the two belongs to an octant of its own.
+      // Entry and exit in the cell's unit square; the cell's diagonal x + y = 1 parts low from high triangle. On the
+      // fold each of the two belongs to an octant of its own.
       corner_uv = real2(real(ix), real(iy));
       real2 p_in = s.uv0 + s.d_uv * lambda - corner_uv;
       real2 p_out = s.uv0 + s.d_uv * exit - corner_uv;
@@ -230,8 +241,12 @@ PW_FUNCTION bool walk_segment(ProbeRecord probe, OctantSegment s, real t_start, 
         state.known = state.known || l1 > l0;
         crosses = false;
         high = !high;
-        l0 = l1; r0 = r1; p0 = p1;
-        l1 = exit; r1 = w_out; p1 = p_out;
+        l0 = l1;
+        r0 = r1;
+        p0 = p1;
+        l1 = exit;
+        r1 = w_out;
+        p1 = p_out;
       }
     }
     if (ended) {
@@ -257,13 +272,16 @@ PW_FUNCTION real octant_sign(bool crosses, real t, real t_start, real x, real d)
   return !crosses ? (x < real(0) ? real(-1) : real(1)) : t > t_start ? -forward : forward;
 }
 
-// The octant that the ray x + t d is in from t_start on, as signs, and when it crosses each axis' plane after that (else
-// PW_NEVER). Signs come from comparing crossing times, never from evaluating points.
+// The octant that the ray x + t d is in from t_start on, as signs, and when it crosses each axis' plane after that
+// (else PW_NEVER). Signs come from comparing crossing times, never from evaluating points.
 PW_FUNCTION void first_octant(real3 x, real3 d, real t_start, PW_OUT(real3) t_cross, PW_OUT(real3) s) {
   real t_axis;
-  bool crosses_x = axis_crossing(x.x, d.x, t_axis); t_cross.x = t_axis;
-  bool crosses_y = axis_crossing(x.y, d.y, t_axis); t_cross.y = t_axis;
-  bool crosses_z = axis_crossing(x.z, d.z, t_axis); t_cross.z = t_axis;
+  bool crosses_x = axis_crossing(x.x, d.x, t_axis);
+  t_cross.x = t_axis;
+  bool crosses_y = axis_crossing(x.y, d.y, t_axis);
+  t_cross.y = t_axis;
+  bool crosses_z = axis_crossing(x.z, d.z, t_axis);
+  t_cross.z = t_axis;
   s.x = octant_sign(crosses_x, t_cross.x, t_start, x.x, d.x);
   s.y = octant_sign(crosses_y, t_cross.y, t_start, x.y, d.y);
   s.z = octant_sign(crosses_z, t_cross.z, t_start, x.z, d.z);
@@ -274,9 +292,18 @@ PW_FUNCTION void first_octant(real3 x, real3 d, real t_start, PW_OUT(real3) t_cr
 
 // Across an axis' plane; -1: none.
 PW_FUNCTION void next_octant(int axis, PW_INOUT(real3) t_cross, PW_INOUT(real3) s) {
-  if (axis == 0) { t_cross.x = PW_NEVER; s.x = -s.x; }
-  if (axis == 1) { t_cross.y = PW_NEVER; s.y = -s.y; }
-  if (axis == 2) { t_cross.z = PW_NEVER; s.z = -s.z; }
+  if (axis == 0) {
+    t_cross.x = PW_NEVER;
+    s.x = -s.x;
+  }
+  if (axis == 1) {
+    t_cross.y = PW_NEVER;
+    s.y = -s.y;
+  }
+  if (axis == 2) {
+    t_cross.z = PW_NEVER;
+    s.z = -s.z;
+  }
 }
 
 // Walks the ray x + t d, t >= t_start, through the probe's map. x: origin relative to the probe. start_level: pyramid

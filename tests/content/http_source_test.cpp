@@ -1,4 +1,6 @@
 // Packs from a web server that is slow, fails, lies or goes away, and the cache of what it has sent.
+#include "content/stream/http_source.h"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -8,7 +10,6 @@
 
 #include "content/error.h"
 #include "content/pack/file_io.h"
-#include "content/stream/chunk_source.h"
 #include "content/stream/open_pack.h"
 #include "content/stream/room_streamer.h"
 #include "pack_fixture.h"
@@ -23,6 +24,9 @@ using test::HttpRequest;
 using testing::HasSubstr;
 
 const std::atomic<bool> kNotCancelled{false};
+bool never() {
+  return false;
+}
 
 std::string text_of(const fs::path& file) {
   std::ifstream in(file, std::ios::binary);
@@ -42,11 +46,13 @@ class HttpSourceTest : public ::testing::Test {
   HttpSource source(const test::HttpServer& server, FetchLimits limits = {.attempts = 4, .first_pause_s = 0.01}) const {
     return HttpSource(server.url() + "/", folder.path() / "cache", 1 << 20, limits);
   }
+  // Why it cannot be read: now (Unavailable), or at all (BadInput).
+  template <class Reason = BadInput>
   std::string reason(const HttpSource& from, const LevelEntry& wanted) const {
     try {
       from.read(wanted, kNotCancelled);
       return "it was read";
-    } catch (const BadInput& error) {
+    } catch (const Reason& error) {
       return error.what();
     }
   }
@@ -59,7 +65,7 @@ class HttpSourceTest : public ::testing::Test {
 
 TEST_F(HttpSourceTest, ReadsAPackOnceAndThenFromItsCache) {
   test::HttpServer server([&](const HttpRequest& r) { return sound(r); });
-  const Pack pack = open_pack(server.url() + "/");
+  const Pack pack = open_pack(server.url() + "/", never);
   EXPECT_EQ(serialise_manifest(pack.manifest()), serialise_manifest(manifest));
   const HttpSource from = source(server);
   const int before = server.requests();
@@ -111,7 +117,7 @@ TEST_F(HttpSourceTest, AsksAgainAfterServerErrorsButNotForWhatIsNotThere) {
   missing.chunk = std::string(32, '0');
   EXPECT_THAT(reason(source(server), missing), HasSubstr("404"));
   EXPECT_EQ(k, 5);
-  EXPECT_THROW(open_pack(server.url() + "/elsewhere"), BadInput);
+  EXPECT_THROW(open_pack(server.url() + "/elsewhere", never), BadInput);
 }
 
 TEST_F(HttpSourceTest, NeverTakesWrongBytes) {
@@ -135,14 +141,15 @@ TEST_F(HttpSourceTest, GivesUpOnAServerThatIsGoneOrStalls) {
     url = server.url();
   }
   const HttpSource gone(url, folder.path() / "cache", 1 << 20, {.attempts = 2, .first_pause_s = 0.01});
-  EXPECT_THAT(reason(gone, level), HasSubstr("2 times"));
+  EXPECT_THAT(reason<Unavailable>(gone, level), HasSubstr("2 times"));
   test::HttpServer stalling([&](const HttpRequest& r) {
     HttpReply reply = sound(r);
     reply.stalls_s = 30.0;
     return reply;
   });
   const auto before = std::chrono::steady_clock::now();
-  EXPECT_THAT(reason(source(stalling, {.attempts = 1, .stall_timeout_s = 1}), level), HasSubstr("1 times"));
+  EXPECT_THAT(reason<Unavailable>(source(stalling, {.attempts = 1, .stall_timeout_s = 1}), level),
+              HasSubstr("1 times"));
   EXPECT_LT(std::chrono::steady_clock::now() - before, std::chrono::seconds(20));
 }
 
@@ -173,6 +180,28 @@ TEST_F(HttpSourceTest, AWalkersRoomsComeInThoughRequestsFail) {
   EXPECT_TRUE(streamer.settle({.head_m = 0.5 * (manifest.rooms[0].bounds.lower_m + manifest.rooms[0].bounds.upper_m)},
                               std::chrono::minutes(1)));
   EXPECT_GT(delivered, 0);
+}
+
+TEST_F(HttpSourceTest, AServerThatComesBackIsAskedAgainWithinTheSecond) {
+  std::atomic<bool> is_down{true};
+  test::HttpServer server(
+      [&](const HttpRequest& r) { return is_down ? HttpReply{.status = 503, .body = "down"} : sound(r); });
+  const HttpSource from = source(server, {.attempts = 1, .first_pause_s = 0.01});
+  std::atomic<int> delivered{0};
+  RoomStreamer streamer(manifest, from, [&](LoadedLevel&&) { ++delivered; }, [](LevelKey) {});
+  const Walker walker{.head_m = 0.5 * (manifest.rooms[0].bounds.lower_m + manifest.rooms[0].bounds.upper_m)};
+  const auto update_for = [&](std::chrono::milliseconds time) {
+    for (const auto end = std::chrono::steady_clock::now() + time; std::chrono::steady_clock::now() < end;) {
+      streamer.update(walker);
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
+  };
+  update_for(std::chrono::milliseconds(300));
+  EXPECT_EQ(delivered, 0);
+  EXPECT_FALSE(streamer.take_errors().empty());
+  is_down = false;
+  update_for(std::chrono::milliseconds(3000));
+  EXPECT_GT(delivered, 0) << "taken for damage it would be asked for after five seconds";
 }
 
 TEST(ChunkCache, StaysWithinItsLimitAndKeepsWhatWasUsedLast) {

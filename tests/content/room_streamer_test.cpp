@@ -1,4 +1,6 @@
 // Loader threads and the streamer on small packs in a folder: what arrives, what fails, how it ends.
+#include "content/stream/room_streamer.h"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -11,7 +13,6 @@
 #include <thread>
 
 #include "content/error.h"
-#include "content/stream/room_streamer.h"
 #include "pack_fixture.h"
 
 namespace probewalk {
@@ -117,7 +118,6 @@ class GatedSource final : public ChunkSource {
     gate_.acquire();
     return folder_.read(level, cancelled);
   }
-  std::string name() const override { return folder_.name(); }
   void open(int readers) { gate_.release(readers); }
   void wait_for_reader() { started_.acquire(); }
 

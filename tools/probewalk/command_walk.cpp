@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "content/error.h"
-#include "content/stream/open_pack.h"
+#include "content/stream/http_fetch.h"
 #include "tools/probewalk/commands.h"
 #include "tools/probewalk/foveation_option.h"
 #include "tools/probewalk/method_options.h"
@@ -44,8 +44,8 @@ VkExtent2D parse_eye_size(const std::string& text) {
   char rest = 0;
   if (std::sscanf(text.c_str(), "%5ux%5u%c", &width, &height, &rest) != 2 || width < 1 || height < 1 ||
       width > kMaxEyeSide_px || height > kMaxEyeSide_px) {
-    throw BadUsage(fmt::format("--eye-size {}: write WxH in pixels of one eye, such as 960x1080, at most {} a side", text,
-                               kMaxEyeSide_px));
+    throw BadUsage(fmt::format("--eye-size {}: write WxH in pixels of one eye, such as 960x1080, at most {} a side",
+                               text, kMaxEyeSide_px));
   }
   return {width, height};
 }
@@ -98,19 +98,23 @@ void run_walk(WalkArguments arguments, const CommonOptions& common) {
   if (arguments.mirror == ShownEyes::kNone && walk_options.display.choice == DisplayChoice::kWindow) {
     throw BadUsage("--mirror off leaves a window nothing to show; it is for headsets");
   }
+  if ((!arguments.cache.empty() || arguments.cache_mib > 0) && !is_http_url(walk_options.pack.string())) {
+    throw BadUsage("--cache and --cache-limit are for packs on web servers; a folder is read where it is");
+  }
   if (!arguments.cache.empty()) walk_options.cache.folder = arguments.cache;
   if (arguments.cache_mib > 0) walk_options.cache.limit_bytes = arguments.cache_mib << 20;
   walk_options.command = own_command_line();
 
   walk_options.choice = chosen_tracer(arguments.method);
   if (!arguments.method.scene.empty() && !walk_options.choice.needs_maps()) {
-    throw BadUsage(fmt::format("--scene is read for methods that need maps; method {} needs none", arguments.method.method));
+    throw BadUsage(
+        fmt::format("--scene is read for methods that need maps; method {} needs none", arguments.method.method));
   }
   const std::unique_ptr<Progress> progress = make_progress(common);
   std::unique_ptr<BaselineMaps> maps;
   if (walk_options.choice.needs_maps()) {
-    maps = chosen_maps(walk_options.choice, arguments.method, open_pack(walk_options.pack.string()), std::nullopt, common.threads,
-                       *progress);
+    const Pack pack = open_pack(walk_options.pack.string(), [&] { return progress->cancelled(); });
+    maps = chosen_maps(walk_options.choice, arguments.method, pack, std::nullopt, common.threads, *progress);
     walk_options.maps = maps.get();
   }
   const WalkResult result = walk(walk_options, *progress);
@@ -128,9 +132,11 @@ void add_walk_command(CLI::App& app, CommonOptions& common) {
   CLI::App* command = app.add_subcommand("walk", "Walk through a pack in a headset, a window or offscreen");
   command->footer(
       "Headset: walk as you are; select (trigger) aims and, released, teleports, menu goes back to the rig's middle.\n"
-      "A window beside it shows what the wearer sees. When the runtime goes away, the walk goes on in a window or offscreen,\n"
+      "A window beside it shows what the wearer sees. When the runtime goes away, the walk goes on in a window or "
+      "offscreen,\n"
       "and in the headset once it is there again.\n"
-      "Window: drag to look, WASD to walk, shift to run, click on the floor to go there, F12 for a picture, Esc to leave.\n"
+      "Window: drag to look, WASD to walk, shift to run, click on the floor to go there, F12 for a picture, Esc to "
+      "leave.\n"
       "Offscreen: plays the pack's tour once over its frames, on a fixed clock.\n\n"
       "  probewalk walk house.probes                                      the first display that answers\n"
       "  probewalk walk house.probes --frames 600 --report report/        with a report of its latency\n"
@@ -140,18 +146,23 @@ void add_walk_command(CLI::App& app, CommonOptions& common) {
       "A replayed path decides what every display shows; in a headset it plays like a film.");
   auto arguments = std::make_shared<WalkArguments>();
   WalkOptions& walk_options = arguments->walk;
-  command->add_option("pack", walk_options.pack, "The pack: a folder NAME.probes, or the address of one, https://…/NAME.probes")->required();
+  command
+      ->add_option("pack", walk_options.pack,
+                   "The pack: a folder NAME.probes, or the address of one, https://…/NAME.probes")
+      ->required();
   const std::map<std::string, DisplayChoice> displays{{"auto", DisplayChoice::kAuto},
                                                       {"headset", DisplayChoice::kHeadset},
                                                       {"window", DisplayChoice::kWindow},
                                                       {"offscreen", DisplayChoice::kOffscreen}};
-  command->add_option("--display", walk_options.display.choice,
-                      "auto (headset if a runtime answers, else a window, else offscreen), headset, window, offscreen")
+  command
+      ->add_option("--display", walk_options.display.choice,
+                   "auto (headset if a runtime answers, else a window, else offscreen), headset, window, offscreen")
       ->transform(CLI::CheckedTransformer(displays))
       ->option_text("NAME");
   command->add_option("--path", arguments->path, "Replay this path: JSON lines, as --record writes them");
   command->add_option("--record", arguments->record, "Write the path walked, with the views of both eyes");
-  command->add_option("--frames", arguments->frames, "End after this many frames (offscreen: 600 unless a path says more)")
+  command
+      ->add_option("--frames", arguments->frames, "End after this many frames (offscreen: 600 unless a path says more)")
       ->check(CLI::Range(1ull, 100'000'000ull));
   command->add_option("--seconds", arguments->seconds, "End after this time on the display's clock")
       ->check(CLI::PositiveNumber);
@@ -163,21 +174,26 @@ void add_walk_command(CLI::App& app, CommonOptions& common) {
   add_foveation_option(*command, walk_options.foveation);
   command->add_option("--device-budget", arguments->budget_mib, "Device memory for probes, MiB (default: unlimited)")
       ->check(CLI::Range(1ull, 1ull << 24));
-  command->add_option("--cache", arguments->cache, "Where chunks of a pack on a web server are kept (default: the user's cache)");
+  command->add_option("--cache", arguments->cache,
+                      "Where chunks of a pack on a web server are kept (default: the user's cache)");
   command->add_option("--cache-limit", arguments->cache_mib, "MiB that they may take there (default: 8192)")
       ->check(CLI::Range(1ull, 1ull << 24));
   command->add_option("--report", arguments->report, "Write frames.csv, summary.json, trace.json and index.html here");
   const std::map<std::string, ShownEyes> eyes{
       {"both", ShownEyes::kBoth}, {"left", ShownEyes::kLeft}, {"right", ShownEyes::kRight}, {"off", ShownEyes::kNone}};
-  arguments->mirror_option = command->add_option("--mirror", arguments->mirror,
-                      "What a window shows: both, left, right (default: both in a window of its own, left beside a headset); "
-                      "off: no window beside a headset")
-      ->transform(CLI::CheckedTransformer(eyes))
-      ->option_text("NAME");
-  CLI::Option* settle =
-      command->add_flag("--settle", arguments->settle, "Wait for the rooms that each pose wants (default: offscreen only)");
+  arguments->mirror_option =
+      command
+          ->add_option(
+              "--mirror", arguments->mirror,
+              "What a window shows: both, left, right (default: both in a window of its own, left beside a headset); "
+              "off: no window beside a headset")
+          ->transform(CLI::CheckedTransformer(eyes))
+          ->option_text("NAME");
+  CLI::Option* settle = command->add_flag("--settle", arguments->settle,
+                                          "Wait for the rooms that each pose wants (default: offscreen only)");
   command->add_flag("--realtime", arguments->realtime, "Never wait for rooms: show what is there")->excludes(settle);
-  command->add_flag("--seated", walk_options.display.seated, "Headset: the head's resting place is at standing eye height");
+  command->add_flag("--seated", walk_options.display.seated,
+                    "Headset: the head's resting place is at standing eye height");
   arguments->ev_option = command->add_option("--ev", arguments->ev, "Exposure value, instead of the pack's")
                              ->check(CLI::Range(-32.0, 32.0));
   command->add_option("--save-frames", arguments->pictures, "Write the eyes' pictures here as PNG");

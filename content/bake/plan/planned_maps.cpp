@@ -1,6 +1,7 @@
 #include "content/bake/plan/planned_maps.h"
 
 #include "content/pack/pack_io.h"
+#include "content/probe/host_address.h"
 
 namespace probewalk {
 namespace {
@@ -34,11 +35,6 @@ std::uint64_t bytes_on_disk(const ProbeMap& map) {
   return encode_chunk(level).size();
 }
 
-glm::uvec2 address_of(const std::vector<std::uint32_t>& words) {
-  const auto bits = static_cast<std::uint64_t>(reinterpret_cast<std::uintptr_t>(words.data()));
-  return {static_cast<std::uint32_t>(bits), static_cast<std::uint32_t>(bits >> 32)};
-}
-
 }  // namespace
 
 const PlannedMaps::Part& PlannedMaps::geometry(std::uint32_t probe, glm::dvec3 position_m, int n) {
@@ -49,7 +45,7 @@ const PlannedMaps::Part& PlannedMaps::geometry(std::uint32_t probe, glm::dvec3 p
   DeviceProbe device = build_device_probe(map);
   part.record = device.record;
   part.words = std::move(device.geometry);
-  part.record.geometry_address = address_of(part.words);
+  part.record.geometry_address = host_address(part.words.data());
   part.bytes_disk = bytes_on_disk(map);
   part.bytes_device = device_block_bytes(part.words);
   return part;
@@ -63,7 +59,7 @@ const PlannedMaps::Part& PlannedMaps::radiance(std::uint32_t probe, glm::dvec3 p
   DeviceProbe device = build_device_probe(map);
   part.record.r_log2 = device.record.r_log2;
   part.words = std::move(device.radiance);
-  part.record.radiance_address = address_of(part.words);
+  part.record.radiance_address = host_address(part.words.data());
   part.bytes_disk = bytes_on_disk(map);
   part.bytes_device = device_block_bytes(part.words);
   return part;

@@ -12,6 +12,7 @@
 #include "content/bake/plan/planned_maps.h"
 #include "content/bake/plan/probe_choice.h"
 #include "content/error.h"
+#include "content/probe/host_address.h"
 #include "content/probe/probe_set.h"
 
 namespace probewalk {
@@ -133,12 +134,8 @@ class Planner {
       if (work > 0) progress_.advance(work);
     }
     ProbeView view{grid_constants(grid_, records.size()), default_dials(double(exposure_.radiance_scale))};
-    const auto address = [](const void* memory) {
-      const auto bits = static_cast<std::uint64_t>(reinterpret_cast<std::uintptr_t>(memory));
-      return glm::uvec2(static_cast<std::uint32_t>(bits), static_cast<std::uint32_t>(bits >> 32));
-    };
-    view.grid.table_address = address(grid_.probe.data());
-    view.grid.probes_address = address(records.data());
+    view.grid.table_address = host_address(grid_.probe.data());
+    view.grid.probes_address = host_address(records.data());
     return measure_error(views, view, triangles_, float(exposure_.exposure_ev), rooms_.size(), only_room);
   }
 

@@ -4,18 +4,19 @@
 
 #include <atomic>
 #include <fstream>
-#include <iterator>
-#include <map>
 
 #include "content/error.h"
 #include "content/pack/file_io.h"
 #include "content/pack/pack_io.h"
 #include "content/scene/procedural/procedural.h"
+#include "support/test_bake.h"
 
 namespace probewalk {
 namespace {
 
 namespace fs = std::filesystem;
+using test::bake_quietly;
+using test::files_below;
 
 // Asks to stop once this many texels are done.
 class StoppingProgress final : public Progress {
@@ -59,21 +60,6 @@ class BakeJob : public testing::Test {
     return o;
   }
 
-  static BakeReport bake_quietly(const BakeOptions& o) {
-    SilentProgress progress;
-    return bake(o, progress);
-  }
-
-  static std::map<std::string, std::string> files(const fs::path& pack) {
-    std::map<std::string, std::string> contents;
-    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(pack)) {
-      if (!entry.is_regular_file()) continue;
-      std::ifstream file(entry.path(), std::ios::binary);
-      contents[fs::relative(entry.path(), pack).string()] = {std::istreambuf_iterator<char>(file), {}};
-    }
-    return contents;
-  }
-
   fs::path folder_;
 };
 
@@ -107,7 +93,7 @@ TEST_F(BakeJob, MakesAWholePackOfTwoLevels) {
 TEST_F(BakeJob, GivesTheSameBytesTwiceAndWhateverTheThreads) {
   bake_quietly(options("one", 1));
   bake_quietly(options("two", 2));
-  EXPECT_EQ(files(folder_ / "one.probes"), files(folder_ / "two.probes"));
+  EXPECT_EQ(files_below(folder_ / "one.probes"), files_below(folder_ / "two.probes"));
 }
 
 TEST_F(BakeJob, GoesOnAfterAnInterruption) {
@@ -123,23 +109,23 @@ TEST_F(BakeJob, GoesOnAfterAnInterruption) {
     }
   }
   bake_quietly(options("stopped"));
-  EXPECT_EQ(files(folder_ / "straight.probes"), files(folder_ / "stopped.probes"));
+  EXPECT_EQ(files_below(folder_ / "straight.probes"), files_below(folder_ / "stopped.probes"));
   EXPECT_FALSE(fs::exists(folder_ / "stopped.probes.partial"));
 }
 
 TEST_F(BakeJob, BakesOneRoomOfAPackAnew) {
   bake_quietly(options("whole"));
-  const auto before = files(folder_ / "whole.probes");
+  const auto before = files_below(folder_ / "whole.probes");
   BakeOptions one = options("whole");
   one.only_room = Pack::open(one.pack).manifest().rooms[0].id;
   bake_quietly(one);
-  EXPECT_EQ(files(folder_ / "whole.probes"), before);
+  EXPECT_EQ(files_below(folder_ / "whole.probes"), before);
   one.only_room = "cellar";
   EXPECT_THROW(bake_quietly(one), BadUsage);
   one.only_room = Pack::open(one.pack).manifest().rooms[0].id;
   one.light.samples = 16;
   EXPECT_THROW(bake_quietly(one), BadUsage) << "its other rooms were baked with other options";
-  EXPECT_EQ(files(folder_ / "whole.probes"), before);
+  EXPECT_EQ(files_below(folder_ / "whole.probes"), before);
 }
 
 TEST_F(BakeJob, GivesTheSameBytesInShares) {
@@ -159,7 +145,7 @@ TEST_F(BakeJob, GivesTheSameBytesInShares) {
   EXPECT_FALSE(fs::exists(folder_ / "shared.probes" / "pack.json"));
   shared.shares = shared.share = 0;
   bake_quietly(shared);
-  EXPECT_EQ(files(folder_ / "whole.probes"), files(folder_ / "shared.probes"));
+  EXPECT_EQ(files_below(folder_ / "whole.probes"), files_below(folder_ / "shared.probes"));
   EXPECT_FALSE(fs::exists(folder_ / "shared.probes.partial"));
   shared.shares = 2;
   shared.share = 3;

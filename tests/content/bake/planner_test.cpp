@@ -4,8 +4,6 @@
 
 #include <cmath>
 #include <fstream>
-#include <iterator>
-#include <map>
 #include <nlohmann/json.hpp>
 
 #include "content/bake/bake_job.h"
@@ -17,11 +15,14 @@
 #include "content/probe/tracer_f32.h"
 #include "content/scene/procedural/procedural.h"
 #include "support/low_discrepancy.h"
+#include "support/test_bake.h"
 
 namespace probewalk {
 namespace {
 
 namespace fs = std::filesystem;
+using test::bake_quietly;
+using test::files_below;
 
 class Planner : public testing::Test {
  protected:
@@ -42,21 +43,6 @@ class Planner : public testing::Test {
     o.light.samples = 8;
     o.light.bounces = 1;
     return o;
-  }
-
-  static BakeReport bake_quietly(const BakeOptions& o) {
-    SilentProgress progress;
-    return bake(o, progress);
-  }
-
-  static std::map<std::string, std::string> files(const fs::path& pack) {
-    std::map<std::string, std::string> contents;
-    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(pack)) {
-      if (!entry.is_regular_file()) continue;
-      std::ifstream file(entry.path(), std::ios::binary);
-      contents[fs::relative(entry.path(), pack).string()] = {std::istreambuf_iterator<char>(file), {}};
-    }
-    return contents;
   }
 
   // Share of rays wrong or holes, from eyes along the tour in all directions: counted here, not by the planner.
@@ -123,7 +109,7 @@ TEST_F(Planner, MakesTheSameBytesWhateverTheThreads) {
   two.light.threads = 2;
   bake_quietly(one);
   bake_quietly(two);
-  EXPECT_EQ(files(one.pack), files(two.pack));
+  EXPECT_EQ(files_below(one.pack), files_below(two.pack));
 }
 
 TEST_F(Planner, SaysWhatItChoseAndWhatCoarserWouldHaveCost) {

@@ -1,5 +1,6 @@
 #include "xr/latency/ledger.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <tuple>
@@ -183,6 +184,24 @@ TEST(Ledger, WhatDidNotHappenHasNoLength) {
   frame = synthetic_frame(1);
   frame.gpu.end += 9 * kMs;  // a millisecond too late
   EXPECT_EQ(derive(frame, &before, true).deadline_margin_ns, -1 * kMs);
+}
+
+TEST(Ledger, CountsWhatTheRuntimeAnsweredAboutPosesAndTakesTheHorizonOfThePoseUsed) {
+  Ledger ledger;
+  for (std::size_t i = 0; i < 10; ++i) {
+    FrameRecord frame = synthetic_frame(i);
+    frame.pose_answer = i < 4   ? PoseAnswer::kMeasured
+                        : i < 7 ? PoseAnswer::kTooLate
+                        : i < 9 ? PoseAnswer::kRefused
+                                : PoseAnswer::kPending;
+    frame.early_pose = true;  // all of them: the late pose was never valid
+    ledger.add(frame);
+  }
+  const Summary summary = ledger.summary();
+  EXPECT_THAT(summary.pose_answers, testing::ElementsAre(0, 1, 4, 3, 2));
+  EXPECT_EQ(summary.early_pose_frames, 10u);
+  // Shown 25 ms after the wait ended, located half a millisecond after it.
+  expect_all(summary, "prediction_horizon", 10, 24.5 * kMs);
 }
 
 TEST(Ledger, KeepsPoseErrorsInTheirOwnUnits) {

@@ -6,28 +6,16 @@
 #include <limits>
 
 #include "content/error.h"
+#include "tools/probewalk/bench/statistics.h"
 
 namespace probewalk::simulation {
-namespace {
-
-// No more than the share p of the values is greater; 0 of none.
-template <class T>
-double percentile(std::vector<T>& values, double p) {
-  if (values.empty()) return 0.0;
-  const auto at = values.begin() + static_cast<std::ptrdiff_t>(p * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), at, values.end());
-  return static_cast<double>(*at);
-}
-
-}  // namespace
 
 Trial run_trial(const Manifest& manifest, const std::vector<SimulatedWalk>& walks,
                 const std::vector<std::string>& policies, const SimulationOptions& options, Progress& progress) {
   Trial trial;
   trial.policies.resize(policies.size());
   struct Waits {
-    std::vector<double> need_s;
-    std::vector<std::int64_t> decide_ns;
+    std::vector<double> need_s, decide_ns;
   };
   std::vector<Waits> waits(policies.size());
   const RoomGraph graph(manifest.rooms, manifest.portals);
@@ -79,10 +67,12 @@ Trial run_trial(const Manifest& manifest, const std::vector<SimulatedWalk>& walk
     sum.missing_octaves /= steps;
     sum.coarse_share /= steps;
     sum.hole_share /= steps;
-    sum.need_p50_s = percentile(waits[k].need_s, 0.5);
-    sum.need_p99_s = percentile(waits[k].need_s, 0.99);
-    sum.decide_p50_ns = percentile(waits[k].decide_ns, 0.5);
-    sum.decide_p99_ns = percentile(waits[k].decide_ns, 0.99);
+    if (!waits[k].need_s.empty()) {
+      sum.need_p50_s = bench::quantile(waits[k].need_s, 0.5);
+      sum.need_p99_s = bench::quantile(waits[k].need_s, 0.99);
+    }
+    sum.decide_p50_ns = bench::quantile(waits[k].decide_ns, 0.5);
+    sum.decide_p99_ns = bench::quantile(waits[k].decide_ns, 0.99);
   }
   return trial;
 }
