@@ -121,6 +121,7 @@ struct Device::Impl {
   bool has_calibrated_timestamps = false;
   float timestamp_period_ns = 1.0f;
   std::atomic<std::uint64_t> allocated_bytes{0};
+  std::atomic<std::uint32_t> pipelines_built{0};
   std::mutex queue_mutex, copy_mutex;
 
   ~Impl() {
@@ -279,6 +280,10 @@ std::uint64_t Device::free_bytes() const {
   }
   return most;
 }
+
+std::uint32_t Device::pipelines_built() const { return impl_->pipelines_built; }
+
+void Device::count_pipeline() const { ++impl_->pipelines_built; }
 
 std::unique_lock<std::mutex> Device::lock_queue() const { return std::unique_lock(impl_->queue_mutex); }
 

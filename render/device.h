@@ -69,6 +69,9 @@ class Device {
   // What of the device's own memory may still be taken, by the driver's estimate (VK_EXT_memory_budget, where offered, or
   // the greater part of the heap).
   std::uint64_t free_bytes() const;
+  // Pipelines made for this device so far: what a frame must not wait for. Whoever makes one counts it.
+  std::uint32_t pipelines_built() const;
+  void count_pipeline() const;
   // To be held around calls of others that use the queue (xrEndFrame and the like, vkQueuePresentKHR).
   [[nodiscard]] std::unique_lock<std::mutex> lock_queue() const;
   // Serialises vkQueueSubmit and friends between the frame thread, the loader and the mirror.

@@ -79,7 +79,8 @@ WalkRooms::WalkRooms(const Pack& pack, const Device& device, const WalkRoomsOpti
     : pack_(pack),
       progress_(progress),
       options_(options),
-      source_(open_source(pack.path().string(), options.cache)),
+      source_(options.open_chunks ? options.open_chunks(pack.path().string(), options.cache)
+                                  : open_source(pack.path().string(), options.cache)),
       store_(device, pack.manifest().grid, static_cast<std::uint32_t>(pack.manifest().probe_positions_m.size()),
              store_options(options, pack.manifest())),
       free_air_(pack.manifest().grid, pack.manifest().probe_positions_m.size()),
