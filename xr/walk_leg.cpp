@@ -242,6 +242,12 @@ void WalkLeg::finish() {
   all.need_to_resident_ns.insert(all.need_to_resident_ns.end(), facts.need_to_resident_ns.begin(),
                                  facts.need_to_resident_ns.end());
   all.loads.insert(all.loads.end(), facts.loads.begin(), facts.loads.end());
+  all.troubles.insert(all.troubles.end(), facts.troubles.begin(), facts.troubles.end());
+  if (facts.source && all.source) {
+    *all.source += *facts.source;
+  } else if (facts.source) {
+    all.source = facts.source;
+  }
   books_.validation_messages += display_.device->validation_messages();
 }
 

@@ -138,6 +138,7 @@ void WalkRooms::settle() {
 
 void WalkRooms::report_errors() {
   for (const std::string& error : streamer_.take_errors()) progress_.note(error);
+  for (const std::string& line : source_->take_notes()) progress_.note(line);
 }
 
 StreamingFacts WalkRooms::facts() const {
@@ -152,6 +153,11 @@ StreamingFacts WalkRooms::facts() const {
                            load.bytes_device, load.requested_ns, load.started_ns, load.read_ns, load.decoded_ns,
                            load.finished_ns});
   }
+  for (const auto& [key, trouble] : streamer_.troubles()) {
+    facts.troubles.push_back(
+        {pack_.manifest().rooms[key.room].id, key.level, trouble.tries, trouble.overcome, trouble.reason});
+  }
+  facts.source = source_->statistics();
   return facts;
 }
 

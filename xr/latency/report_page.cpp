@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <iterator>
@@ -143,6 +144,31 @@ std::string worst_table(const Summary& summary) {
          "that grew most over its median.</p>\n";
 }
 
+std::string words_of(const SourceStatistics& source) {
+  std::string text = fmt::format("{}: {} chunks, {} more from the cache; {} requests, {} failed", source.address,
+                                 source.chunks, source.from_cache, source.requests, source.failed_requests);
+  if (source.requests > 0 && source.failed_requests > 0) {
+    text += fmt::format(" ({})", percent(static_cast<double>(source.failed_requests) / static_cast<double>(source.requests)));
+  }
+  if (source.damaged > 0) text += fmt::format(", {} answers damaged", source.damaged);
+  if (!source.last_failure.empty()) text += "; the last failure: " + source.last_failure;
+  return text;
+}
+
+// What could not be loaded when it was wanted; the first few by name.
+std::string words_of(const std::vector<LevelTrouble>& troubles) {
+  if (troubles.empty()) return {};
+  constexpr std::size_t kNamed = 5;
+  const auto lasting = std::count_if(troubles.begin(), troubles.end(), [](const auto& each) { return !each.overcome; });
+  std::string text = fmt::format("{} of {} never came after all", lasting, troubles.size());
+  for (std::size_t i = 0; i < std::min(kNamed, troubles.size()); ++i) {
+    const LevelTrouble& each = troubles[i];
+    text += fmt::format("; room {}, level {}, {} times{}: {}", each.room, each.level, each.tries,
+                        each.overcome ? ", then loaded" : "", each.reason);
+  }
+  return text + (troubles.size() > kNamed ? "; …" : "");
+}
+
 // Facts of one run that every report must state, in the order of the table.
 struct Fact {
   const char* name;
@@ -216,6 +242,8 @@ const std::vector<Fact>& facts() {
          const std::uint64_t bytes = r.info.streaming.device_budget_bytes;
          return bytes > 0 ? in_bytes(bytes) : std::string("none set");
        }},
+      {"web server", [](const Run& r, const Summary&) { return r.info.streaming.source ? words_of(*r.info.streaming.source) : ""; }},
+      {"failed loads", [](const Run& r, const Summary&) { return words_of(r.info.streaming.troubles); }},
   };
   return all;
 }

@@ -50,6 +50,30 @@ Json device_json(const DeviceFacts& device) {
           {"is_software", device.is_software}};
 }
 
+Json source_json(const std::optional<SourceStatistics>& source) {
+  if (!source) return {};
+  return {{"address", source->address},
+          {"chunks", source->chunks},
+          {"from_cache", source->from_cache},
+          {"requests", source->requests},
+          {"failed_requests", source->failed_requests},
+          {"damaged", source->damaged},
+          {"bytes", source->bytes},
+          {"last_failure", text_or_null(source->last_failure)}};
+}
+
+Json troubles_json(const std::vector<LevelTrouble>& troubles) {
+  Json list = Json::array();
+  for (const LevelTrouble& trouble : troubles) {
+    list.push_back({{"room", trouble.room},
+                    {"level", trouble.level},
+                    {"tries", trouble.tries},
+                    {"overcome", trouble.overcome},
+                    {"reason", trouble.reason}});
+  }
+  return list;
+}
+
 Json streaming_json(const Summary& summary, const StreamingFacts& facts) {
   Histogram need_to_resident;
   for (const std::int64_t duration : facts.need_to_resident_ns) need_to_resident.add(duration);
@@ -67,7 +91,9 @@ Json streaming_json(const Summary& summary, const StreamingFacts& facts) {
           {"need_to_resident_ns", facts.need_to_resident_ns},
           {"frame_thread_p99_ns", or_null(summary.frame_thread_p99_ns)},
           {"device_bytes_max", summary.device_bytes_max},
-          {"device_budget_bytes", facts.device_budget_bytes > 0 ? Json(facts.device_budget_bytes) : Json()}};
+          {"device_budget_bytes", facts.device_budget_bytes > 0 ? Json(facts.device_budget_bytes) : Json()},
+          {"source", source_json(facts.source)},
+          {"troubles", troubles_json(facts.troubles)}};
 }
 
 Json pose_answers_json(const Summary& summary) {
@@ -119,6 +145,30 @@ void take(const Json& json, const char* key, T& value, const std::string& file) 
 Json object_in(const Json& json, const char* key) {
   const auto found = json.find(key);
   return found != json.end() && found->is_object() ? *found : Json::object();
+}
+
+void take_source_facts(const Json& streaming, StreamingFacts& facts, const std::string& file) {
+  if (const Json source = object_in(streaming, "source"); !source.empty()) {
+    SourceStatistics& read = facts.source.emplace();
+    take(source, "address", read.address, file);
+    take(source, "chunks", read.chunks, file);
+    take(source, "from_cache", read.from_cache, file);
+    take(source, "requests", read.requests, file);
+    take(source, "failed_requests", read.failed_requests, file);
+    take(source, "damaged", read.damaged, file);
+    take(source, "bytes", read.bytes, file);
+    take(source, "last_failure", read.last_failure, file);
+  }
+  const auto troubles = streaming.find("troubles");
+  if (troubles == streaming.end() || !troubles->is_array()) return;
+  for (const Json& entry : *troubles) {
+    LevelTrouble& trouble = facts.troubles.emplace_back();
+    take(entry, "room", trouble.room, file);
+    take(entry, "level", trouble.level, file);
+    take(entry, "tries", trouble.tries, file);
+    take(entry, "overcome", trouble.overcome, file);
+    take(entry, "reason", trouble.reason, file);
+  }
 }
 
 }  // namespace
@@ -210,6 +260,7 @@ SummaryHead parse_summary_json(std::string_view text, const std::string& file) {
   take(streaming, "rooms_loaded", info.streaming.rooms_loaded, file);
   take(streaming, "device_budget_bytes", info.streaming.device_budget_bytes, file);
   take(streaming, "need_to_resident_ns", info.streaming.need_to_resident_ns, file);
+  take_source_facts(streaming, info.streaming, file);
   if (const auto changes = json.find("display_changes"); changes != json.end() && changes->is_array()) {
     for (const Json& entry : *changes) {
       DisplayChange change;
