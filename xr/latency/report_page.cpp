@@ -219,8 +219,22 @@ const std::vector<Fact>& facts() {
        }},
       {"coarse frames",
        [](const Run&, const Summary& s) {
-         return s.coarse_frame_fraction ? percent(*s.coarse_frame_fraction) + " shown below the wanted level"
-                                        : std::string();
+         return s.coarse_frame_fraction
+                    ? fmt::format("{} shown below the wanted level, at most {} after one another, {:.3f} s",
+                                  percent(*s.coarse_frame_fraction), s.coarse_run_max,
+                                  static_cast<double>(s.coarse_run_max_ns) * 1e-9)
+                    : std::string();
+       }},
+      {"need to resident",
+       [](const Run& r, const Summary&) {
+         const NeedToResident need = need_to_resident(r.info.streaming);
+         return need.count > 0 && need.p50_ns && need.p99_ns
+                    ? fmt::format("p50 {} ms, p99 {} ms, of {} loads", in_ms(*need.p50_ns), in_ms(*need.p99_ns), need.count)
+                    : std::string();
+       }},
+      {"frame thread in streaming",
+       [](const Run&, const Summary& s) {
+         return s.frame_thread_p99_ns ? fmt::format("p99 {} ms a frame", in_ms(*s.frame_thread_p99_ns)) : std::string();
        }},
   };
   return all;

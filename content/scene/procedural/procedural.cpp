@@ -19,6 +19,10 @@ struct Entry {
 constexpr Entry kScenes[] = {
     {"house", "the sample house: ten furnished rooms on two floors, a stair, a courtyard with a tree",
      procedural::make_house},
+    {"building-20", "a furnished building of 20 rooms on two storeys, a stair, a terrace",
+     [] { return procedural::make_building(20); }},
+    {"building-200", "the same of 200 rooms: for streaming, a pack many times larger than what the device holds",
+     [] { return procedural::make_building(200); }, true},
     {"box-room", "one plain room with a block and one lamp", procedural::make_box_room},
     {"two-rooms", "two rooms with a doorway, a table on thin legs, a column", procedural::make_two_rooms},
     {"lattice", "hard case: two grilles of 2 cm bars, 12 cm apart, across a room", procedural::make_lattice},
