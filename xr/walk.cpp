@@ -45,7 +45,8 @@ WalkView view_of(const Manifest& manifest, bool offscreen, std::optional<Path> p
                  std::optional<std::uint64_t> frames) {
   if (path) return WalkView::of_path(std::move(*path));
   if (!offscreen) return {};
-  return frames ? WalkView::of_tour(path_of_tour(manifest.tour), *frames) : WalkView::of_path(path_of_tour(manifest.tour));
+  return frames ? WalkView::of_tour(path_of_tour(manifest.tour), *frames)
+                : WalkView::of_path(path_of_tour(manifest.tour));
 }
 
 // What the report says of the display that the walk began on.

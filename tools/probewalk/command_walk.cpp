@@ -192,7 +192,8 @@ void add_walk_command(CLI::App& app, CommonOptions& common) {
           ->option_text("NAME");
   CLI::Option* settle = command->add_flag("--settle", arguments->settle,
                                           "Wait for the rooms that each pose wants (default: offscreen only)");
-  command->add_flag("--realtime", arguments->realtime, "Never wait for rooms: show what is there, when a display would")->excludes(settle);
+  command->add_flag("--realtime", arguments->realtime, "Never wait for rooms: show what is there, when a display would")
+      ->excludes(settle);
   command->add_flag("--seated", walk_options.display.seated,
                     "Headset: the head's resting place is at standing eye height");
   arguments->ev_option = command->add_option("--ev", arguments->ev, "Exposure value, instead of the pack's")

@@ -229,7 +229,8 @@ const std::vector<Fact>& facts() {
        [](const Run& r, const Summary&) {
          const NeedToResident need = need_to_resident(r.info.streaming);
          return need.count > 0 && need.p50_ns && need.p99_ns
-                    ? fmt::format("p50 {} ms, p99 {} ms, of {} loads", in_ms(*need.p50_ns), in_ms(*need.p99_ns), need.count)
+                    ? fmt::format("p50 {} ms, p99 {} ms, of {} loads", in_ms(*need.p50_ns), in_ms(*need.p99_ns),
+                                  need.count)
                     : std::string();
        }},
       {"frame thread in streaming",

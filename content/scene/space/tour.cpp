@@ -18,7 +18,7 @@ constexpr std::size_t kFewestStations = 4;  // of a small room, where it has roo
 constexpr float kNearestStation_m = 1.2f;
 constexpr std::size_t kMostStations = 24;   // besides the middles of rooms
 constexpr std::size_t kMostRoomStations = 1000;  // the order takes time with the cube of it
-constexpr std::size_t kFewStations = 64;    // among more, ways are searched only as far as the nearest few stations
+constexpr std::size_t kFewStations = 64;  // among more, ways are searched only as far as the nearest few stations
 constexpr std::size_t kNearStations = 12;
 
 // Uphill in the distance to walls, not farther than a step or two: the middle of where one is.
@@ -38,7 +38,7 @@ std::int32_t climb(const FloorGraph& graph, const WalkPaths& paths, std::int32_t
 // Root first, then the widest place of every room, then the place farthest from all stations, until all are near:
 // indices into the part's places.
 std::vector<std::int32_t> find_stations(const WalkGround& ground, const WalkPaths& paths, std::int32_t root,
-                                   Progress& progress) {
+                                        Progress& progress) {
   std::map<std::int32_t, std::int32_t> widest;  // by room
   for (const std::int32_t i : ground.places) {
     const auto [entry, fresh] = widest.try_emplace(ground.room[i], i);
@@ -250,7 +250,8 @@ double glance_rad(double from_station_m) {
 std::vector<Pose> find_tour(const WalkGround& ground, const Pose& start, Progress& progress) {
   const WalkPaths paths(ground.graph, ground.places);
   const std::int32_t root = paths.local(nearest_place(ground.graph, ground.places, start.position_m));
-  const std::vector<WayPoint> way = walk_stations(ground, paths, find_stations(ground, paths, root, progress), progress);
+  const std::vector<WayPoint> way =
+      walk_stations(ground, paths, find_stations(ground, paths, root, progress), progress);
   const std::vector<double> along_m = distances_along(way);
   const int count = int(std::round(along_m.back() / kPoseStep_m)) + 1;
   if (count < 8) return look_around(start);

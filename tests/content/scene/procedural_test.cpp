@@ -323,9 +323,11 @@ TEST(ProceduralBuildings, NoRayPassesItsShell) {
       const float t = static_cast<float>(step) / 400.0f;
       for (const float x : {lower.x, upper.x}) {
         for (const float y : {lower.y, upper.y})
-          EXPECT_TRUE(rays.closest(middle, glm::vec3(x, y, glm::mix(lower.z, upper.z, t)) - middle).hit) << name << ' ' << t;
+          EXPECT_TRUE(rays.closest(middle, glm::vec3(x, y, glm::mix(lower.z, upper.z, t)) - middle).hit)
+              << name << ' ' << t;
         for (const float z : {lower.z, upper.z})
-          EXPECT_TRUE(rays.closest(middle, glm::vec3(x, glm::mix(lower.y, upper.y, t), z) - middle).hit) << name << ' ' << t;
+          EXPECT_TRUE(rays.closest(middle, glm::vec3(x, glm::mix(lower.y, upper.y, t), z) - middle).hit)
+              << name << ' ' << t;
       }
     }
   }
