@@ -116,7 +116,7 @@ Display open_display(const DisplayOptions& options, const FloorMap& floor, const
     case DisplayChoice::kWindow:
       return open_window(options, floor, start);
     case DisplayChoice::kOffscreen:
-      return open_offscreen(options, start);
+      return open_offscreen(options, start, options.offscreen_in_real_time);
     case DisplayChoice::kAuto:
       break;
   }
@@ -136,7 +136,7 @@ Display open_display(const DisplayOptions& options, const FloorMap& floor, const
   } catch (const NoDevice& error) {
     window_silent = error.what();
   }
-  Display display = open_offscreen(options, start);
+  Display display = open_offscreen(options, start, options.offscreen_in_real_time);
   display.reason = fmt::format("{}; {}", headset_silent, window_silent);
   return display;
 }

@@ -26,6 +26,7 @@ struct DisplayOptions {
   // Of the window, and of the mirror beside a headset. Empty = both in a window of its own, the left one in a mirror.
   std::optional<ShownEyes> window_eyes;
   bool seated = false;
+  bool offscreen_in_real_time = false;  // at the pace of a display, not on a fixed clock
   EyeGeometry eyes;  // window and offscreen; a headset has its own
   DeviceOptions device;
 };

@@ -87,7 +87,8 @@ bool WalkLeg::is_over(const FrameTiming& timing) {
   if (!books_.first_display_ns) books_.first_display_ns = timing.predicted_display_ns;
   const double seconds = static_cast<double>(timing.predicted_display_ns - *books_.first_display_ns) * 1e-9;
   if (options_.seconds && seconds > *options_.seconds) return true;
-  return !books_.frames && !options_.seconds && books_.view.is_over(timing.predicted_display_ns);
+  const bool in_real_time = !books_.frames && source_.kind() == "offscreen" && !settle_;
+  return !books_.frames && (in_real_time || !options_.seconds) && books_.view.is_over(timing.predicted_display_ns);
 }
 
 template <typename Work>

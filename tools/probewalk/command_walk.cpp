@@ -152,7 +152,8 @@ void add_walk_command(CLI::App& app, CommonOptions& common) {
       "and in the headset once it is there again.\n"
       "Window: drag to look, WASD to walk, shift to run, click on the floor to go there, F12 for a picture, Esc to "
       "leave.\n"
-      "Offscreen: plays the pack's tour once over its frames, on a fixed clock.\n\n"
+      "Offscreen: plays the pack's tour once over its frames, on a fixed clock; with --realtime (and no --frames) the\n"
+      "tour at a walker's pace on the real clock, until it or --seconds are over.\n\n"
       "  probewalk walk house.probes                                      the first display that answers\n"
       "  probewalk walk house.probes --frames 600 --report report/        with a report of its latency\n"
       "  probewalk walk house.probes --display headset --record walk.jsonl\n"
@@ -211,7 +212,8 @@ void add_walk_command(CLI::App& app, CommonOptions& common) {
           ->option_text("NAME");
   CLI::Option* settle = command->add_flag("--settle", arguments->settle,
                                           "Wait for the rooms that each pose wants (default: offscreen only)");
-  command->add_flag("--realtime", arguments->realtime, "Never wait for rooms: show what is there")->excludes(settle);
+  command->add_flag("--realtime", arguments->realtime, "Never wait for rooms: show what is there, when a display would")
+      ->excludes(settle);
   command->add_flag("--seated", walk_options.display.seated,
                     "Headset: the head's resting place is at standing eye height");
   arguments->ev_option = command->add_option("--ev", arguments->ev, "Exposure value, instead of the pack's")

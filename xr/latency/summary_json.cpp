@@ -75,19 +75,15 @@ Json troubles_json(const std::vector<LevelTrouble>& troubles) {
 }
 
 Json streaming_json(const Summary& summary, const StreamingFacts& facts) {
-  Histogram need_to_resident;
-  for (const std::int64_t duration : facts.need_to_resident_ns) need_to_resident.add(duration);
-  std::optional<std::int64_t> p50, p99;
-  for (const PercentileRank& rank : percentile_ranks()) {
-    if (rank.p == 0.5) p50 = need_to_resident.percentile(rank);
-    if (rank.p == 0.99) p99 = need_to_resident.percentile(rank);
-  }
+  const NeedToResident need = need_to_resident(facts);
   return {{"bytes", summary.bytes_uploaded},
           {"rooms_loaded", facts.rooms_loaded},
           {"coarse_frame_fraction", or_null(summary.coarse_frame_fraction)},
-          {"need_to_resident_n", need_to_resident.count()},
-          {"need_to_resident_p50_ns", or_null(p50)},
-          {"need_to_resident_p99_ns", or_null(p99)},
+          {"coarse_run_max", summary.coarse_run_max},
+          {"coarse_run_max_ns", summary.coarse_run_max_ns},
+          {"need_to_resident_n", need.count},
+          {"need_to_resident_p50_ns", or_null(need.p50_ns)},
+          {"need_to_resident_p99_ns", or_null(need.p99_ns)},
           {"need_to_resident_ns", facts.need_to_resident_ns},
           {"frame_thread_p99_ns", or_null(summary.frame_thread_p99_ns)},
           {"device_bytes_max", summary.device_bytes_max},

@@ -72,6 +72,37 @@ TEST(Ledger, WarmUpIsCountedAndLeftOut) {
   EXPECT_FALSE(short_run.within_budget_fraction.has_value());
 }
 
+TEST(Ledger, KnowsTheLongestTimeAtACoarseLevel) {
+  // Coarse: 3 frames, a break, 2 frames of which the second is shown for five periods, one at the end.
+  Ledger ledger;
+  const bool coarse[] = {false, true, true, true, false, true, true, false, false, true};
+  std::int64_t display = 1'000 * kPeriod;
+  for (std::size_t i = 0; i < std::size(coarse); ++i) {
+    FrameRecord frame = synthetic_frame(i);
+    frame.predicted_display = display;
+    frame.level_wanted = 1, frame.level_shown = coarse[i] ? 0 : 1;
+    ledger.add(frame);
+    display += (i == 6 ? 5 : 1) * kPeriod;
+  }
+  const Summary summary = ledger.summary();
+  EXPECT_EQ(summary.coarse_frame_fraction, 0.6);
+  EXPECT_EQ(summary.coarse_run_max, 3u);
+  EXPECT_EQ(summary.coarse_run_max_ns, 6 * kPeriod);
+
+  Ledger to_the_end;  // a run that the walk's end cuts off counts, its last frame with its own refresh
+  for (std::size_t i = 0; i < 4; ++i) {
+    FrameRecord frame = synthetic_frame(i);
+    frame.predicted_display = static_cast<std::int64_t>(100 + i) * kPeriod;
+    frame.level_wanted = 1, frame.level_shown = i < 2 ? 1 : 0;
+    to_the_end.add(frame);
+  }
+  EXPECT_EQ(to_the_end.summary().coarse_run_max, 2u);
+  EXPECT_EQ(to_the_end.summary().coarse_run_max_ns, 2 * kPeriod);
+
+  EXPECT_EQ(regular_run(20).summary().coarse_run_max, 0u);
+  EXPECT_EQ(regular_run(20).summary().coarse_run_max_ns, 0);
+}
+
 TEST(Ledger, CountsMissedRefreshesFromPredictedDisplayTimes) {
   // Advances in periods: 1, 1.4 (on time), 1.6 (one missed), 4 (three missed), 1.
   const double advances[] = {1.0, 1.4, 1.6, 4.0, 1.0};
