@@ -10,6 +10,7 @@
 #include "render/device.h"
 #include "xr/eyes.h"
 #include "xr/frame_source.h"
+#include "xr/locomotion.h"
 #include "xr/window_layout.h"
 
 namespace probewalk {
@@ -26,7 +27,9 @@ struct DisplayOptions {
   // Of the window, and of the mirror beside a headset. Empty = both in a window of its own, the left one in a mirror.
   std::optional<ShownEyes> window_eyes;
   bool seated = false;
-  EyeGeometry eyes;  // window and offscreen; a headset has its own
+  LocomotionOptions locomotion;
+  std::optional<bool> vignette;  // empty = in a headset, not in a window
+  EyeGeometry eyes;  // window and offscreen, in the viewer's metres; a headset has its own
   DeviceOptions device;
 };
 

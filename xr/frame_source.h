@@ -6,12 +6,14 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <glm/gtc/quaternion.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "render/depth_range.h"
 #include "render/device.h"
 #include "render/frame_target.h"
+#include "xr/walkable.h"
 
 namespace probewalk {
 
@@ -73,6 +75,10 @@ class FrameSource {
 
   // How dark locomotion wants the picture: 0 = as it is, 1 = black (a teleport's blink).
   virtual float fade() const { return 0.0f; }
+  // While the user aims a teleport: its way, in the world.
+  virtual const FloorArc* aim() const { return nullptr; }
+  // How far locomotion narrows the view: 0 = not at all, 1 = as far as it goes.
+  virtual float vignette() const { return 0.0f; }
   // Whether a person's head moves the view, which no wall holds back.
   virtual bool head_is_real() const { return false; }
   // Of frames whose time has come since the last call. Always empty where a display has no later answer.

@@ -18,10 +18,11 @@ namespace probewalk {
 
 struct HeadsetOptions {
   VkExtent2D eye_size{0, 0};  // 0 = what the runtime recommends
-  bool seated = false;        // the head's resting place is at standing eye height, wherever the floor is
+  bool seated = false;        // the head's resting place is at the locomotion's eye height, wherever the floor is
+  LocomotionOptions locomotion;
 };
 
-// Nothing but the wearer moves the view; teleports blink. When runtime, session or service goes away no call throws:
+// Nothing but the wearer moves the view, by head, hands and sticks (locomotion.h); teleports blink. When runtime, session or service goes away no call throws:
 // poll says kLost.
 class OpenXrSource final : public FrameSource {
  public:
@@ -39,12 +40,14 @@ class OpenXrSource final : public FrameSource {
   std::uint32_t view_count() const override { return static_cast<std::uint32_t>(views_.size()); }
   VkFormat color_format() const override { return format_; }
   VkFormat depth_format() const override { return depth_format_; }
-  void set_depth_range(const DepthRange& range) override { depth_range_ = range; }
+  void set_depth_range(const DepthRange& range) override { depth_range_ = range; }  // in metres of the scene
   FrameTarget acquire() override;
   // The layer states the poses of the last locate; of `rendered_views` it takes the fields of view, which differ from
   // the located ones only where a path is replayed.
   void end(const FrameTiming& timing, const std::vector<ViewPose>& rendered_views) override;
-  float fade() const override { return blink_.darkness(); }
+  float fade() const override { return locomotion_.fade(); }
+  const FloorArc* aim() const override { return locomotion_.aim(); }
+  float vignette() const override { return locomotion_.vignette(); }
   bool head_is_real() const override { return true; }
   std::vector<PoseError> take_pose_errors() override;
   void finish() override;
@@ -65,7 +68,7 @@ class OpenXrSource final : public FrameSource {
   };
 
   void create_session();
-  void create_space(bool seated);
+  void create_space(bool seated, double eye_height_m);
   void create_swapchains(VkExtent2D wanted);
   // False when the runtime is gone (the state then says so); throws on any other error.
   bool alive(XrResult result, const char* call);
@@ -74,18 +77,19 @@ class OpenXrSource final : public FrameSource {
   void on_session_change(XrSessionState next);
   bool locate_views(XrTime time, std::vector<XrView>& views);
   static Head head_of(const std::vector<XrView>& views);
-  void place_rig(const Head& head);
+  static HeadPose in_rig(const Head& head);
   void move(double dt_s, XrTime time);
 
   const OpenXrInstance& instance_;
   const Device& device_;
-  const FloorMap& floor_;
+  const double world_scale_;
+  Locomotion locomotion_;
   Pose anchor_;  // where the head is put when the rig is placed: the start, later where it last was
   SessionState state_;
   XrOwned<XrSession, xrDestroySession> session_;
   std::unique_ptr<OpenXrInput> input_;
   XrOwned<XrSpace, xrDestroySpace> space_;
-  double space_floor_m_ = 0.0;  // y of the floor in the session's space
+  RigFloor rig_floor_;  // in the session's space
   std::string space_name_;
   XrEnvironmentBlendMode blend_mode_ = XR_ENVIRONMENT_BLEND_MODE_OPAQUE;
 
@@ -100,11 +104,8 @@ class OpenXrSource final : public FrameSource {
   bool views_valid_ = false;
   XrTime display_time_ = 0;    // of the frame under way, as the runtime gave it
   XrTime space_changes_at_ = 0;
-  std::deque<ShownPose> shown_;
-
-  Rig rig_;
   bool rig_placed_ = false;
-  Blink blink_;
+  std::deque<ShownPose> shown_;
 };
 
 }  // namespace probewalk
