@@ -1,5 +1,7 @@
 #include "render/buffer.h"
 
+#include <array>
+
 #include "render/check.h"
 #include "render/vma.h"
 
@@ -37,6 +39,14 @@ Buffer::Buffer(const Device& device, VkDeviceSize size_bytes, BufferMemory memor
   info.size = size_bytes;
   info.usage = VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT |
                VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT | extra_usage;
+  // Copied to on one queue and read on another, without handing over from family to family.
+  const std::array families{device.queue_family(), device.copy_queue_family()};
+  const bool is_copied = memory == BufferMemory::kDevice || memory == BufferMemory::kStaging;
+  if (is_copied && families[0] != families[1]) {
+    info.sharingMode = VK_SHARING_MODE_CONCURRENT;
+    info.queueFamilyIndexCount = static_cast<std::uint32_t>(families.size());
+    info.pQueueFamilyIndices = families.data();
+  }
   const VmaAllocationCreateInfo wanted = allocation_info(memory);
   VmaAllocationInfo allocated{};
   check(vmaCreateBuffer(device.allocator(), &info, &wanted, &handle_, &allocation_, &allocated), "vmaCreateBuffer");
@@ -50,8 +60,8 @@ Buffer::~Buffer() {
   if (handle_ != VK_NULL_HANDLE) vmaDestroyBuffer(device_->allocator(), handle_, allocation_);
 }
 
-void Buffer::flush() const {
-  check(vmaFlushAllocation(device_->allocator(), allocation_, 0, VK_WHOLE_SIZE), "vmaFlushAllocation");
+void Buffer::flush(VkDeviceSize offset_bytes, VkDeviceSize size_bytes) const {
+  check(vmaFlushAllocation(device_->allocator(), allocation_, offset_bytes, size_bytes), "vmaFlushAllocation");
 }
 
 void Buffer::invalidate() const {

@@ -47,7 +47,8 @@ class Buffer {
   }
   // After the CPU has written, before the submit that reads; and before the CPU reads what the GPU wrote. No-ops on
   // coherent memory.
-  void flush() const;
+  void flush() const { flush(0, size_bytes_); }
+  void flush(VkDeviceSize offset_bytes, VkDeviceSize size_bytes) const;
   void invalidate() const;
 
  private:

@@ -4,6 +4,7 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <charconv>
 #include <mutex>
@@ -112,14 +113,16 @@ struct Device::Impl {
   VkInstance instance = VK_NULL_HANDLE;
   VkPhysicalDevice physical = VK_NULL_HANDLE;
   VkDevice device = VK_NULL_HANDLE;
-  std::uint32_t family = 0;
-  VkQueue queue = VK_NULL_HANDLE;
+  std::uint32_t family = 0, copy_family = 0;
+  VkQueue queue = VK_NULL_HANDLE, copy_queue = VK_NULL_HANDLE;
   VmaAllocator allocator = VK_NULL_HANDLE;
   DeviceInfo info;
+  bool has_memory_budget = false;
   bool has_calibrated_timestamps = false;
   float timestamp_period_ns = 1.0f;
   std::atomic<std::uint64_t> allocated_bytes{0};
-  std::mutex queue_mutex;
+  std::atomic<std::uint32_t> pipelines_built{0};
+  std::mutex queue_mutex, copy_mutex;
 
   ~Impl() {
     if (device != VK_NULL_HANDLE) vkDeviceWaitIdle(device);
@@ -162,22 +165,30 @@ void Device::Impl::choose_physical(const DeviceHooks& hooks, const DeviceOptions
   physical = devices[index];
   info = infos[index];
   family = find_queue_family(physical, can_present(physical)).value();
+  copy_family = find_copy_queue_family(physical).value_or(family);
 }
 
 void Device::Impl::create_device(const DeviceHooks& hooks) {
   auto extensions = c_strings(hooks.device_extensions);
+  has_memory_budget = has_extension(physical, VK_EXT_MEMORY_BUDGET_EXTENSION_NAME);
+  if (has_memory_budget) extensions.push_back(VK_EXT_MEMORY_BUDGET_EXTENSION_NAME);
   has_calibrated_timestamps = has_extension(physical, VK_EXT_CALIBRATED_TIMESTAMPS_EXTENSION_NAME);
   if (has_calibrated_timestamps) extensions.push_back(VK_EXT_CALIBRATED_TIMESTAMPS_EXTENSION_NAME);
   const RequiredFeatures features;
   const float priority = 1.0f;
-  VkDeviceQueueCreateInfo queue_info{VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO};
-  queue_info.queueFamilyIndex = family;
-  queue_info.queueCount = 1;
-  queue_info.pQueuePriorities = &priority;
+  std::vector<VkDeviceQueueCreateInfo> queues;
+  for (const std::uint32_t each : {family, copy_family}) {
+    if (!queues.empty() && each == family) continue;
+    VkDeviceQueueCreateInfo& queue_info = queues.emplace_back();
+    queue_info.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO;
+    queue_info.queueFamilyIndex = each;
+    queue_info.queueCount = 1;
+    queue_info.pQueuePriorities = &priority;
+  }
   VkDeviceCreateInfo device_info{VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO};
   device_info.pNext = &features.head;
-  device_info.queueCreateInfoCount = 1;
-  device_info.pQueueCreateInfos = &queue_info;
+  device_info.queueCreateInfoCount = static_cast<std::uint32_t>(queues.size());
+  device_info.pQueueCreateInfos = queues.data();
   device_info.enabledExtensionCount = static_cast<std::uint32_t>(extensions.size());
   device_info.ppEnabledExtensionNames = extensions.data();
   check(hooks.create_device ? hooks.create_device(vkGetInstanceProcAddr, physical, device_info, &device)
@@ -185,6 +196,7 @@ void Device::Impl::create_device(const DeviceHooks& hooks) {
         "vkCreateDevice");
   volkLoadDevice(device);
   vkGetDeviceQueue(device, family, 0, &queue);
+  vkGetDeviceQueue(device, copy_family, 0, &copy_queue);
   VkPhysicalDeviceProperties properties{};
   vkGetPhysicalDeviceProperties(physical, &properties);
   timestamp_period_ns = properties.limits.timestampPeriod;
@@ -205,6 +217,7 @@ void Device::Impl::create_allocator() {
   functions.vkGetDeviceProcAddr = vkGetDeviceProcAddr;
   VmaAllocatorCreateInfo allocator_info{};
   allocator_info.flags = VMA_ALLOCATOR_CREATE_BUFFER_DEVICE_ADDRESS_BIT;
+  if (has_memory_budget) allocator_info.flags |= VMA_ALLOCATOR_CREATE_EXT_MEMORY_BUDGET_BIT;
   allocator_info.physicalDevice = physical;
   allocator_info.device = device;
   allocator_info.instance = instance;
@@ -247,6 +260,7 @@ VkPhysicalDevice Device::physical() const { return impl_->physical; }
 VkDevice Device::handle() const { return impl_->device; }
 VkQueue Device::queue() const { return impl_->queue; }
 std::uint32_t Device::queue_family() const { return impl_->family; }
+std::uint32_t Device::copy_queue_family() const { return impl_->copy_family; }
 VmaAllocator_T* Device::allocator() const { return impl_->allocator; }
 const DeviceInfo& Device::info() const { return impl_->info; }
 bool Device::has_calibrated_timestamps() const { return impl_->has_calibrated_timestamps; }
@@ -254,11 +268,34 @@ float Device::timestamp_period_ns() const { return impl_->timestamp_period_ns; }
 std::uint32_t Device::validation_messages() const { return impl_->validation.messages(); }
 std::uint64_t Device::allocated_bytes() const { return impl_->allocated_bytes; }
 
+std::uint64_t Device::free_bytes() const {
+  std::array<VmaBudget, VK_MAX_MEMORY_HEAPS> budgets{};
+  vmaGetHeapBudgets(impl_->allocator, budgets.data());
+  const VkPhysicalDeviceMemoryProperties* memory = nullptr;
+  vmaGetMemoryProperties(impl_->allocator, &memory);
+  std::uint64_t most = 0;
+  for (std::uint32_t heap = 0; heap < memory->memoryHeapCount; ++heap) {
+    if ((memory->memoryHeaps[heap].flags & VK_MEMORY_HEAP_DEVICE_LOCAL_BIT) == 0) continue;
+    most = std::max(most, budgets[heap].budget - std::min(budgets[heap].usage, budgets[heap].budget));
+  }
+  return most;
+}
+
+std::uint32_t Device::pipelines_built() const { return impl_->pipelines_built; }
+
+void Device::count_pipeline() const { ++impl_->pipelines_built; }
+
 std::unique_lock<std::mutex> Device::lock_queue() const { return std::unique_lock(impl_->queue_mutex); }
 
 void Device::submit(const VkSubmitInfo2& info, VkFence fence) const {
   const std::lock_guard lock(impl_->queue_mutex);
   check(vkQueueSubmit2(impl_->queue, 1, &info, fence), "vkQueueSubmit2");
+}
+
+void Device::submit_copies(const VkSubmitInfo2& info) const {
+  if (!has_copy_queue()) return submit(info, VK_NULL_HANDLE);
+  const std::lock_guard lock(impl_->copy_mutex);
+  check(vkQueueSubmit2(impl_->copy_queue, 1, &info, VK_NULL_HANDLE), "vkQueueSubmit2");
 }
 
 void Device::wait_idle() const {

@@ -55,6 +55,9 @@ class Device {
   VkDevice handle() const;
   VkQueue queue() const;
   std::uint32_t queue_family() const;
+  // Of a queue that only copies, beside the other; where the device has none, the other's.
+  std::uint32_t copy_queue_family() const;
+  bool has_copy_queue() const { return copy_queue_family() != queue_family(); }
   VmaAllocator_T* allocator() const;
   const DeviceInfo& info() const;
   bool has_calibrated_timestamps() const;
@@ -63,10 +66,18 @@ class Device {
   std::uint32_t validation_messages() const;
   // Bytes of device memory allocated through this device and not freed, as vkAllocateMemory saw them.
   std::uint64_t allocated_bytes() const;
+  // What of the device's own memory may still be taken, by the driver's estimate (VK_EXT_memory_budget, where offered, or
+  // the greater part of the heap).
+  std::uint64_t free_bytes() const;
+  // Pipelines made for this device so far: what a frame must not wait for. Whoever makes one counts it.
+  std::uint32_t pipelines_built() const;
+  void count_pipeline() const;
   // To be held around calls of others that use the queue (xrEndFrame and the like, vkQueuePresentKHR).
   [[nodiscard]] std::unique_lock<std::mutex> lock_queue() const;
   // Serialises vkQueueSubmit and friends between the frame thread, the loader and the mirror.
   void submit(const VkSubmitInfo2& info, VkFence fence) const;
+  // The same to the queue of copy_queue_family().
+  void submit_copies(const VkSubmitInfo2& info) const;
   void wait_idle() const;
 
  private:

@@ -52,6 +52,17 @@ std::optional<std::uint32_t> find_queue_family(VkPhysicalDevice device, const Ca
   return std::nullopt;
 }
 
+std::optional<std::uint32_t> find_copy_queue_family(VkPhysicalDevice device) {
+  const auto families = queue_families(device);
+  for (std::uint32_t family = 0; family < families.size(); ++family) {
+    const VkQueueFlags flags = families[family].queueFlags;
+    const bool only_copies =
+        (flags & VK_QUEUE_TRANSFER_BIT) != 0 && (flags & (VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT)) == 0;
+    if (only_copies && families[family].queueCount > 0) return family;
+  }
+  return std::nullopt;
+}
+
 bool has_extension(VkPhysicalDevice device, const char* name) {
   std::uint32_t count = 0;
   check(vkEnumerateDeviceExtensionProperties(device, nullptr, &count, nullptr), "vkEnumerateDeviceExtensionProperties");

@@ -35,6 +35,9 @@ using CanPresent = std::function<bool(std::uint32_t family)>;
 // A family with graphics and compute (and presentation), if any.
 std::optional<std::uint32_t> find_queue_family(VkPhysicalDevice device, const CanPresent& can_present);
 
+// A family that only copies, and copies any bytes, if there is one.
+std::optional<std::uint32_t> find_copy_queue_family(VkPhysicalDevice device);
+
 bool has_extension(VkPhysicalDevice device, const char* name);
 
 // Describes the device; `suitable` and `missing` are judged with these extensions and presentation in addition.

@@ -134,13 +134,17 @@ struct FrameRenderer::Impl {
     for (std::size_t i = 0; i < buffers.size(); ++i) {
       infos[i] = {VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO, nullptr, buffers[i], 0};
     }
-    const VkSemaphoreSubmitInfo wait =
-        semaphore_info(wait_before, 0, VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT);
+    std::array<VkSemaphoreSubmitInfo, 2> waits{};
+    std::uint32_t wait_count = 0;
+    if (wait_before != VK_NULL_HANDLE) {
+      waits[wait_count++] = semaphore_info(wait_before, 0, VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT);
+    }
+    if (const std::optional<VkSemaphoreSubmitInfo> copies = store.wait_before()) waits[wait_count++] = *copies;
     const std::array signals{semaphore_info(timeline, work + 1, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT),
                              semaphore_info(signal_after, 0, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT)};
     VkSubmitInfo2 info{VK_STRUCTURE_TYPE_SUBMIT_INFO_2};
-    info.waitSemaphoreInfoCount = wait_before != VK_NULL_HANDLE ? 1 : 0;
-    info.pWaitSemaphoreInfos = &wait;
+    info.waitSemaphoreInfoCount = wait_count;
+    info.pWaitSemaphoreInfos = waits.data();
     info.commandBufferInfoCount = static_cast<std::uint32_t>(buffers.size());
     info.pCommandBufferInfos = infos.data();
     info.signalSemaphoreInfoCount = signal_after != VK_NULL_HANDLE ? 2 : 1;

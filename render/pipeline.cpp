@@ -43,7 +43,8 @@ StorageImageSet::StorageImageSet(const Device& device, VkShaderStageFlags stages
   std::vector<VkDescriptorSetLayoutBinding> bindings;
   std::vector<VkDescriptorImageInfo> infos;
   for (VkImageView view : images) {
-    bindings.push_back({static_cast<std::uint32_t>(bindings.size()), VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, 1, stages, nullptr});
+    bindings.push_back(
+        {static_cast<std::uint32_t>(bindings.size()), VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, 1, stages, nullptr});
     infos.push_back({VK_NULL_HANDLE, view, VK_IMAGE_LAYOUT_GENERAL});
   }
   VkDescriptorSetLayoutCreateInfo layout_info{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO};
@@ -123,6 +124,7 @@ Pipeline Pipeline::compute(const Device& device, const StorageImageSet* images, 
   info.layout = result.layout_;
   check(vkCreateComputePipelines(device.handle(), VK_NULL_HANDLE, 1, &info, nullptr, &result.pipeline_),
         "vkCreateComputePipelines");
+  device.count_pipeline();
   return result;
 }
 
@@ -145,8 +147,8 @@ Pipeline Pipeline::full_screen(const Device& device, const StorageImageSet& imag
   VkPipelineMultisampleStateCreateInfo multisample{VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO};
   multisample.rasterizationSamples = VK_SAMPLE_COUNT_1_BIT;
   VkPipelineColorBlendAttachmentState attachment{};
-  attachment.colorWriteMask = VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT | VK_COLOR_COMPONENT_B_BIT |
-                              VK_COLOR_COMPONENT_A_BIT;
+  attachment.colorWriteMask =
+      VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT | VK_COLOR_COMPONENT_B_BIT | VK_COLOR_COMPONENT_A_BIT;
   VkPipelineColorBlendStateCreateInfo blend{VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO};
   const bool is_depth = aspect_of(format) == VK_IMAGE_ASPECT_DEPTH_BIT;
   blend.attachmentCount = is_depth ? 0 : 1;
@@ -180,6 +182,7 @@ Pipeline Pipeline::full_screen(const Device& device, const StorageImageSet& imag
   info.layout = result.layout_;
   check(vkCreateGraphicsPipelines(device.handle(), VK_NULL_HANDLE, 1, &info, nullptr, &result.pipeline_),
         "vkCreateGraphicsPipelines");
+  device.count_pipeline();
   return result;
 }
 

@@ -1,41 +1,10 @@
 #include "render/probe_blocks.h"
 
 #include <algorithm>
-#include <cstddef>
 #include <ranges>
 #include <span>
-#include <utility>
-
-#include "render/check.h"
 
 namespace probewalk {
-namespace {
-
-std::uint64_t largest_buffer_bytes(const Device& device) {
-  VkPhysicalDeviceMaintenance4Properties sizes{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MAINTENANCE_4_PROPERTIES};
-  VkPhysicalDeviceMaintenance3Properties allocations{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MAINTENANCE_3_PROPERTIES, &sizes};
-  VkPhysicalDeviceProperties2 properties{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, &allocations};
-  vkGetPhysicalDeviceProperties2(device.physical(), &properties);
-  return std::min({sizes.maxBufferSize, allocations.maxMemoryAllocationSize, VkDeviceSize{1} << 31});
-}
-
-// Half-open ranges of probes, each of which fits one buffer (a single probe is at most 1.2 GiB).
-std::vector<std::pair<std::size_t, std::size_t>> split(const std::vector<DeviceProbe>& probes, std::uint64_t limit) {
-  std::vector<std::pair<std::size_t, std::size_t>> ranges;
-  std::uint64_t bytes = 0;
-  for (std::size_t i = 0; i < probes.size(); ++i) {
-    const std::uint64_t more = device_bytes(probes[i]);
-    if (ranges.empty() || bytes + more > limit) {
-      ranges.emplace_back(i, i);
-      bytes = 0;
-    }
-    ranges.back().second = i + 1;
-    bytes += more;
-  }
-  return ranges;
-}
-
-}  // namespace
 
 std::uint64_t ProbeBlocks::bytes_of(const std::vector<DeviceProbe>& probes) {
   std::uint64_t bytes = 0;
@@ -43,30 +12,33 @@ std::uint64_t ProbeBlocks::bytes_of(const std::vector<DeviceProbe>& probes) {
   return bytes;
 }
 
-ProbeBlocks::ProbeBlocks(const Device& device, const std::vector<DeviceProbe>& probes, bool stage) {
-  for (const auto& [first, end] : split(probes, largest_buffer_bytes(device))) {
-    std::uint64_t bytes = 0;
-    for (std::size_t i = first; i < end; ++i) bytes += device_bytes(probes[i]);
-    blocks_.emplace_back(device, bytes, BufferMemory::kDevice);
-    const bool is_staged = stage || blocks_.back().mapped() == nullptr;
-    if (is_staged) staged_.push_back({blocks_.size() - 1, Buffer(device, bytes, BufferMemory::kStaging)});
-    const Buffer& written = is_staged ? staged_.back().words : blocks_.back();
-    std::uint64_t offset = 0;
-    const auto append = [&](const std::vector<std::uint32_t>& words) {
-      std::ranges::copy(std::as_bytes(std::span(words)), written.mapped() + offset);  // of none, too
-      return blocks_.back().address() + std::exchange(offset, offset + device_block_bytes(words));
-    };
-    for (std::size_t i = first; i < end; ++i) {
-      const VkDeviceAddress geometry = append(probes[i].geometry);
-      addresses_.push_back({geometry, append(probes[i].radiance)});
-    }
-    written.flush();
+VkDeviceAddress ProbeBlocks::place(const Device& device, ProbeArena& arena, const std::vector<std::uint32_t>& words,
+                                   bool stage) {
+  if (words.empty()) return 0;
+  ProbeArena::Piece& piece = pieces_.emplace_back(arena.allocate(device_block_bytes(words)));
+  const std::span bytes = std::as_bytes(std::span(words));
+  if (stage || piece.mapped() == nullptr) {
+    Staged& staged =
+        staged_.emplace_back(pieces_.size() - 1, Buffer(device, piece.size_bytes(), BufferMemory::kStaging));
+    std::ranges::copy(bytes, staged.words.mapped());
+    staged.words.flush();
+  } else {
+    std::ranges::copy(bytes, piece.mapped());
+    piece.flush();
+  }
+  return piece.address();
+}
+
+ProbeBlocks::ProbeBlocks(const Device& device, ProbeArena& arena, const std::vector<DeviceProbe>& probes, bool stage) {
+  for (const DeviceProbe& probe : probes) {
+    const VkDeviceAddress geometry = place(device, arena, probe.geometry, stage);
+    addresses_.push_back({geometry, place(device, arena, probe.radiance, stage)});
   }
 }
 
 std::uint64_t ProbeBlocks::size_bytes() const {
   std::uint64_t bytes = 0;
-  for (const Buffer& block : blocks_) bytes += block.size_bytes();
+  for (const ProbeArena::Piece& piece : pieces_) bytes += piece.size_bytes();
   return bytes;
 }
 
@@ -74,9 +46,10 @@ std::uint64_t ProbeBlocks::copy(VkCommandBuffer commands, std::uint64_t budget_b
   std::uint64_t copied = 0;
   while (!is_complete() && copied < budget_bytes) {
     Staged& from = staged_.front();
+    const ProbeArena::Piece& to = pieces_[from.piece];
     const std::uint64_t bytes = std::min(budget_bytes - copied, from.words.size_bytes() - next_byte_);
-    const VkBufferCopy region{next_byte_, next_byte_, bytes};
-    vkCmdCopyBuffer(commands, from.words.handle(), blocks_[from.block].handle(), 1, &region);
+    const VkBufferCopy region{next_byte_, to.offset_bytes() + next_byte_, bytes};
+    vkCmdCopyBuffer(commands, from.words.handle(), to.buffer(), 1, &region);
     copied += bytes;
     next_byte_ += bytes;
     if (next_byte_ < from.words.size_bytes()) break;

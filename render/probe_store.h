@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "content/bake/placement.h"
@@ -16,10 +17,15 @@ namespace probewalk {
 
 struct ProbeStoreOptions {
   std::uint32_t frame_slots = 2;
-  // Copied by the queue in one frame at most, where the CPU cannot write the device's memory itself.
+  // Device memory for probes, all of it taken at once; 0: taken as needed.
+  std::uint64_t arena_bytes = 0;
+  // Copied in one frame at most, where the CPU cannot write the device's memory itself: on a queue of its own where the
+  // device has one, else by the frame's commands.
   std::uint64_t upload_bytes_per_frame = 8u << 20;
   // Copy through the queue even where the CPU could write the device's memory.
   bool always_stage = false;
+  // Copy beside the frames even where there is but one queue.
+  bool copy_apart = false;
   // Over so many frames the colours of a finer level take over from those of the level shown before; 0 = at once.
   std::uint32_t fade_frames = 0;
 };
@@ -57,6 +63,9 @@ class ProbeStore {
                             std::uint64_t completed_frame);
   // Blocks until everything handed in is on the device and in the tables of all slots. No frame may be in flight.
   void settle();
+  // What a frame begun here must wait for on the device before it traces, if anything: copies that have run on another
+  // queue (they have finished: nothing is lost by waiting).
+  std::optional<VkSemaphoreSubmitInfo> wait_before() const;
   // What the frame in `slot` traces against.
   const GridConstants& grid(std::uint32_t slot) const;
 
@@ -65,6 +74,7 @@ class ProbeStore {
   int level_shown(std::uint32_t room) const;                        // as of the last begin_frame; -1 = none
   bool is_resident(std::uint32_t room, std::uint32_t level) const;  // all of it is on the device
   std::uint64_t device_bytes() const;    // of probe data, what is retired but not yet freed included
+  std::uint64_t reserved_bytes() const;  // taken from the device for it
   std::uint32_t queue_depth() const;     // uploads that wait for their copies
   std::uint64_t bytes_uploaded() const;  // since construction
 

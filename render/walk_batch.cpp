@@ -20,13 +20,14 @@ constexpr std::size_t kRaysPerDispatch = std::size_t{1} << 16;
 WalkBatch::WalkBatch(const Device& device)
     : device_(device),
       pipeline_(Pipeline::compute(device, nullptr, spirv::k_walk_rays_comp, {})),
+      arena_(device),
       constants_(device, sizeof(WalkConstants), BufferMemory::kShared),
       rays_(device, kRaysPerDispatch * sizeof(WalkRay), BufferMemory::kShared),
       ends_(device, kRaysPerDispatch * sizeof(WalkEnd), BufferMemory::kReadback) {}
 
 void WalkBatch::set_probe(const DeviceProbe& probe) {
   blocks_.reset();
-  ProbeBlocks& blocks = blocks_.emplace(device_, std::vector<DeviceProbe>{probe}, false);
+  ProbeBlocks& blocks = blocks_.emplace(device_, arena_, std::vector<DeviceProbe>{probe}, false);
   if (!blocks.is_complete()) {
     run_commands(device_, [&](VkCommandBuffer commands) {
       blocks.copy(commands, std::numeric_limits<std::uint64_t>::max());

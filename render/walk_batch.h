@@ -26,6 +26,7 @@ class WalkBatch {
  private:
   const Device& device_;
   Pipeline pipeline_;
+  ProbeArena arena_;
   std::optional<ProbeBlocks> blocks_;
   ProbeRecord record_{};
   Buffer constants_, rays_, ends_;

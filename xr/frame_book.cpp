@@ -27,8 +27,14 @@ void FrameBook::add(const PoseError& error) {
   const auto entry = std::ranges::find_if(
       open_, [&](const Entry& e) { return e.record.predicted_display == error.predicted_display_ns; });
   if (entry == open_.end()) return;
+  entry->record.pose_answer = error.answer;
+  if (error.answer != PoseAnswer::kMeasured) return;
   entry->record.pose_error_mm = error.position_mm;
   entry->record.pose_error_deg = error.angle_deg;
+}
+
+void FrameBook::add_ledger_time(const Interval& interval) {
+  if (!open_.empty()) open_.back().record.ledger = interval;
 }
 
 void FrameBook::close() {

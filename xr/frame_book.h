@@ -20,6 +20,8 @@ class FrameBook {
   void add(const FrameRecord& record, std::uint64_t drawn);
   void add(const FrameGpuTimes& times);
   void add(const PoseError& error);
+  // What the ledger's own questions took after the frame added last.
+  void add_ledger_time(const Interval& interval);
   // Hands over all that is left.
   void close();
 

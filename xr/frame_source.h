@@ -13,6 +13,7 @@
 #include "render/depth_range.h"
 #include "render/device.h"
 #include "render/frame_target.h"
+#include "xr/latency/frame_record.h"
 #include "xr/walkable.h"
 
 namespace probewalk {
@@ -38,9 +39,18 @@ struct ViewPose {
   float fov_left_rad = -0.7f, fov_right_rad = 0.7f, fov_up_rad = 0.7f, fov_down_rad = -0.7f;
 };
 
+// What became of a frame, where the source's methods do more than the runtime's calls that they are named after.
+struct FrameOutcome {
+  Interval wait, begin, end;         // enter and leave of the bare calls; CLOCK_MONOTONIC, 0 = not called
+  std::int64_t blocked_ns = 0;       // beside the calls: waiting for the device's queue
+  bool shown = false;                // false: ended without layers
+  bool pose_answer_follows = false;  // take_pose_errors() will have something to say of it
+};
+
 // How far the pose that a frame was drawn with lay from the pose that the display knew once its time had come.
 struct PoseError {
-  std::int64_t predicted_display_ns = 0;  // of the frame
+  std::int64_t predicted_display_ns = 0;      // of the frame
+  PoseAnswer answer = PoseAnswer::kMeasured;  // the errors are known only then
   double position_mm = 0.0;
   double angle_deg = 0.0;
 };
@@ -73,6 +83,9 @@ class FrameSource {
   // Ends the frame with the views that were rendered (empty = nothing was).
   virtual void end(const FrameTiming& timing, const std::vector<ViewPose>& rendered_views) = 0;
 
+  // Of the frame that end() ended last. Empty = the methods are the calls, and what was drawn is shown.
+  virtual std::optional<FrameOutcome> outcome() const { return {}; }
+
   // How dark locomotion wants the picture: 0 = as it is, 1 = black (a teleport's blink).
   virtual float fade() const { return 0.0f; }
   // While the user aims a teleport: its way, in the world.
@@ -81,7 +94,8 @@ class FrameSource {
   virtual float vignette() const { return 0.0f; }
   // Whether a person's head moves the view, which no wall holds back.
   virtual bool head_is_real() const { return false; }
-  // Of frames whose time has come since the last call. Always empty where a display has no later answer.
+  // One for each frame whose time has come since the last call; asks the runtime. Always empty where a display has no
+  // later answer.
   virtual std::vector<PoseError> take_pose_errors() { return {}; }
   // Whether the user asked for a picture of the next frame.
   virtual bool take_screenshot_request() { return false; }

@@ -8,9 +8,11 @@
 #include <chrono>
 #include <cmath>
 #include <thread>
+#include <utility>
 
 #include "content/error.h"
 #include "xr/latency/clock.h"
+#include "xr/latency/stopwatch.h"
 #include "xr/openxr_enumerate.h"
 #include "xr/path.h"
 
@@ -22,8 +24,12 @@ constexpr XrViewConfigurationType kStereo = XR_VIEW_CONFIGURATION_TYPE_PRIMARY_S
 constexpr std::int64_t kPoseHistory_ns = 50'000'000;
 constexpr auto kExitPatience = std::chrono::milliseconds(500);
 
-glm::dvec3 vec_of(const XrVector3f& v) { return {v.x, v.y, v.z}; }
-glm::dquat quat_of(const XrQuaternionf& q) { return glm::normalize(glm::dquat(q.w, q.x, q.y, q.z)); }
+glm::dvec3 vec_of(const XrVector3f& v) {
+  return {v.x, v.y, v.z};
+}
+glm::dquat quat_of(const XrQuaternionf& q) {
+  return glm::normalize(glm::dquat(q.w, q.x, q.y, q.z));
+}
 
 XrPosef identity_pose(float y_m = 0.0f) {
   XrPosef pose{};
@@ -42,9 +48,12 @@ VkFormat first_offered(const std::vector<std::int64_t>& offered, std::initialize
 
 const char* depth_name(VkFormat format) {
   switch (format) {
-    case VK_FORMAT_D32_SFLOAT: return "depth as D32_SFLOAT";
-    case VK_FORMAT_D16_UNORM: return "depth as D16_UNORM";
-    default: return "no depth";
+    case VK_FORMAT_D32_SFLOAT:
+      return "depth as D32_SFLOAT";
+    case VK_FORMAT_D16_UNORM:
+      return "depth as D16_UNORM";
+    default:
+      return "no depth";
   }
 }
 
@@ -96,6 +105,7 @@ void OpenXrSource::create_space(bool seated, double eye_height_m) {
     rig_floor_ = {-eye_height_m, false};
     space_name_ = fmt::format("LOCAL, {}eyes at rest {} m over the floor", seated ? "seated, " : "", eye_height_m);
   }
+  space_type_ = info.referenceSpaceType;
   check_xr(xrCreateReferenceSpace(session_.get(), &info, space_.out()), "xrCreateReferenceSpace");
 }
 
@@ -119,7 +129,7 @@ void OpenXrSource::create_swapchains(VkExtent2D wanted) {
     throw BadUsage(fmt::format("--eye-size {}x{}: this headset takes at most {}x{}", extent_.width, extent_.height,
                                most.width, most.height));
   }
-  views_.assign(configurations.size(), {XR_TYPE_VIEW, nullptr, identity_pose(), {}});
+  view_count_ = static_cast<std::uint32_t>(configurations.size());
 
   const auto modes = enumerate_xr<XrEnvironmentBlendMode>(
       "xrEnumerateEnvironmentBlendModes", {}, [&](auto capacity, auto* count, auto* items) {
@@ -146,8 +156,8 @@ void OpenXrSource::create_swapchains(VkExtent2D wanted) {
     return;
   }
   depth_ = std::make_unique<OpenXrSwapchain>(
-      session_.get(), OpenXrSwapchainOptions{depth_format_, XR_SWAPCHAIN_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT, extent_,
-                                             view_count()});
+      session_.get(),
+      OpenXrSwapchainOptions{depth_format_, XR_SWAPCHAIN_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT, extent_, view_count()});
 }
 
 std::string OpenXrSource::description() const {
@@ -197,10 +207,14 @@ SourceState OpenXrSource::poll() {
         spdlog::warn("the OpenXR runtime is going away");
         state_.on_lost();
         break;
-      case XR_TYPE_EVENT_DATA_REFERENCE_SPACE_CHANGE_PENDING:
+      case XR_TYPE_EVENT_DATA_REFERENCE_SPACE_CHANGE_PENDING: {
         // The origin will jump: the rig is placed anew then, so that the view does not.
-        space_changes_at_ = reinterpret_cast<const XrEventDataReferenceSpaceChangePending&>(event).changeTime;
+        const auto& change = reinterpret_cast<const XrEventDataReferenceSpaceChangePending&>(event);
+        if (change.session == session_.get() && change.referenceSpaceType == space_type_) {
+          space_changes_at_ = change.changeTime;
+        }
         break;
+      }
       case XR_TYPE_EVENT_DATA_INTERACTION_PROFILE_CHANGED:
         input_->note_controllers(session_.get());
         break;
@@ -216,12 +230,16 @@ FrameTiming OpenXrSource::wait() {
   timing.should_render = false;
   XrFrameWaitInfo info{XR_TYPE_FRAME_WAIT_INFO};
   XrFrameState frame{XR_TYPE_FRAME_STATE};
-  if (!alive(xrWaitFrame(session_.get(), &info, &frame), "xrWaitFrame")) return timing;
+  const XrTime last_display_time = std::exchange(frame_, {}).display_time;
+  XrResult result = XR_SUCCESS;
+  frame_.outcome.wait = timed([&] { result = xrWaitFrame(session_.get(), &info, &frame); });
+  if (!alive(result, "xrWaitFrame")) return timing;
   timing.predicted_display_ns = instance_.monotonic_ns(frame.predictedDisplayTime);
   timing.period_ns = frame.predictedDisplayPeriod;
   timing.should_render = frame.shouldRender == XR_TRUE;
-  const double dt_s = display_time_ == 0 ? 0.0 : static_cast<double>(frame.predictedDisplayTime - display_time_) * 1e-9;
-  display_time_ = frame.predictedDisplayTime;
+  const double dt_s =
+      last_display_time == 0 ? 0.0 : static_cast<double>(frame.predictedDisplayTime - last_display_time) * 1e-9;
+  frame_.display_time = frame.predictedDisplayTime;
   move(std::clamp(dt_s, 0.0, 0.1), frame.predictedDisplayTime);
   return timing;
 }
@@ -229,23 +247,39 @@ FrameTiming OpenXrSource::wait() {
 void OpenXrSource::begin(FrameTiming& timing) {
   if (state_.source_state() == SourceState::kLost) return;
   XrFrameBeginInfo info{XR_TYPE_FRAME_BEGIN_INFO};
-  const auto queue = device_.lock_queue();
-  const XrResult result = xrBeginFrame(session_.get(), &info);
+  const auto queue = lock_queue();
+  XrResult result = XR_SUCCESS;
+  frame_.outcome.begin = timed([&] { result = xrBeginFrame(session_.get(), &info); });
   if (alive(result, "xrBeginFrame")) timing.discarded = result == XR_FRAME_DISCARDED;
 }
 
-bool OpenXrSource::locate_views(XrTime time, std::vector<XrView>& views) {
-  if (state_.source_state() == SourceState::kLost) return false;
+std::unique_lock<std::mutex> OpenXrSource::lock_queue() {
+  const std::int64_t before_ns = now_ns();
+  auto lock = device_.lock_queue();
+  frame_.outcome.blocked_ns += now_ns() - before_ns;
+  return lock;
+}
+
+std::vector<XrView> OpenXrSource::locate_views(XrTime time) {
+  if (state_.source_state() == SourceState::kLost) return {};
+  std::vector<XrView> views(view_count_, {XR_TYPE_VIEW, nullptr, identity_pose(), {}});
   XrViewLocateInfo info{XR_TYPE_VIEW_LOCATE_INFO};
   info.viewConfigurationType = kStereo;
   info.displayTime = time;
   info.space = space_.get();
   XrViewState state{XR_TYPE_VIEW_STATE};
   auto count = static_cast<std::uint32_t>(views.size());
-  if (!alive(xrLocateViews(session_.get(), &info, &state, count, &count, views.data()), "xrLocateViews")) return false;
+  const XrResult result = xrLocateViews(session_.get(), &info, &state, count, &count, views.data());
+  if (result == XR_ERROR_TIME_INVALID) {
+    // It names a time itself and then knows nothing of it: that costs a frame, not the walk.
+    if (!std::exchange(warned_of_time_, true)) spdlog::warn("the OpenXR runtime has no pose for a time of its own");
+    return {};
+  }
+  if (!alive(result, "xrLocateViews")) return {};
   // Valid, not tracked: a headset that sees nothing for a moment still has the best pose there is.
   constexpr XrViewStateFlags kValid = XR_VIEW_STATE_POSITION_VALID_BIT | XR_VIEW_STATE_ORIENTATION_VALID_BIT;
-  return (state.viewStateFlags & kValid) == kValid;
+  if ((state.viewStateFlags & kValid) != kValid) return {};
+  return views;
 }
 
 OpenXrSource::Head OpenXrSource::head_of(const std::vector<XrView>& views) {
@@ -261,17 +295,19 @@ HeadPose OpenXrSource::in_rig(const Head& head) {
 }
 
 std::vector<ViewPose> OpenXrSource::locate(const FrameTiming& timing, ViewPose* head) {
-  const XrTime time = display_time_ != 0 ? display_time_ : instance_.xr_time(timing.predicted_display_ns);
-  views_valid_ = locate_views(time, views_);
-  if (!views_valid_) return {};
-  const Head rig_head = head_of(views_);
+  const XrTime time = frame_.display_time != 0 ? frame_.display_time : instance_.xr_time(timing.predicted_display_ns);
+  std::vector<XrView> located = locate_views(time);
+  if (located.empty()) return {};
+  frame_.views = std::move(located);
+  const Head rig_head = head_of(frame_.views);
+  head_ = rig_head;
   if (!rig_placed_) {
     locomotion_.place(anchor_, in_rig(rig_head), rig_floor_);
     rig_placed_ = true;
   }
   const Rig& rig = locomotion_.rig();
   std::vector<ViewPose> views;
-  for (const XrView& view : views_) {
+  for (const XrView& view : frame_.views) {
     ViewPose& pose = views.emplace_back();
     pose.position_m = rig.world_from_rig(vec_of(view.pose.position));
     pose.orientation = rig.world_from_rig(quat_of(view.pose.orientation));
@@ -290,8 +326,8 @@ std::vector<ViewPose> OpenXrSource::locate(const FrameTiming& timing, ViewPose* 
 
 // What hands and sticks want, recentring and fades: once a frame, before its views are located.
 void OpenXrSource::move(double dt_s, XrTime time) {
-  if (!views_valid_ || !rig_placed_) return;
-  const HeadPose head = in_rig(head_of(views_));
+  if (!head_ || !rig_placed_) return;
+  const HeadPose head = in_rig(*head_);
   if (space_changes_at_ != 0 && time >= space_changes_at_) {
     anchor_ = locomotion_.anchor(head);
     rig_placed_ = false;
@@ -302,7 +338,7 @@ void OpenXrSource::move(double dt_s, XrTime time) {
   if (state_.focused()) {
     XrResult result = XR_SUCCESS;
     input = input_->poll(session_.get(), space_.get(), time, result);
-    if (!alive(result, "xrSyncActions")) return;
+    if (result != XR_ERROR_TIME_INVALID && !alive(result, "xrSyncActions")) return;
   }
   locomotion_.advance(head, input, dt_s);
 }
@@ -335,20 +371,20 @@ FrameTarget OpenXrSource::acquire() {
 
 void OpenXrSource::end(const FrameTiming& timing, const std::vector<ViewPose>& rendered_views) {
   if (state_.source_state() == SourceState::kLost) return;
-  const auto queue = device_.lock_queue();
+  const auto queue = lock_queue();
   const bool drawn = color_->image() != VK_NULL_HANDLE;
   for (OpenXrSwapchain* swapchain : {color_.get(), depth_.get()}) {
     if (swapchain == nullptr) continue;
     const OpenXrOutcome outcome = swapchain->release();
     if (!alive(outcome.result, outcome.call)) return;
   }
-  const bool shown = drawn && views_valid_ && rendered_views.size() == views_.size();
+  const bool shown = drawn && !frame_.views.empty() && rendered_views.size() == frame_.views.size();
 
   std::vector<XrCompositionLayerDepthInfoKHR> layer_depths(view_count(), {XR_TYPE_COMPOSITION_LAYER_DEPTH_INFO_KHR});
   std::vector<XrCompositionLayerProjectionView> layer_views;
   for (std::uint32_t i = 0; shown && i < view_count(); ++i) {
     XrCompositionLayerProjectionView view{XR_TYPE_COMPOSITION_LAYER_PROJECTION_VIEW};
-    view.pose = views_[i].pose;
+    view.pose = frame_.views[i].pose;
     view.fov = {rendered_views[i].fov_left_rad, rendered_views[i].fov_right_rad, rendered_views[i].fov_up_rad,
                 rendered_views[i].fov_down_rad};
     view.subImage = color_->layer(i);
@@ -370,30 +406,39 @@ void OpenXrSource::end(const FrameTiming& timing, const std::vector<ViewPose>& r
   projection.views = layer_views.data();
   const std::array layers{reinterpret_cast<const XrCompositionLayerBaseHeader*>(&projection)};
   XrFrameEndInfo info{XR_TYPE_FRAME_END_INFO};
-  info.displayTime = display_time_;
+  info.displayTime = frame_.display_time;
   info.environmentBlendMode = blend_mode_;
   info.layerCount = shown ? 1 : 0;
   info.layers = layers.data();
-  if (!alive(xrEndFrame(session_.get(), &info), "xrEndFrame")) return;
+  XrResult result = XR_SUCCESS;
+  frame_.outcome.end = timed([&] { result = xrEndFrame(session_.get(), &info); });
+  if (!alive(result, "xrEndFrame")) return;
+  frame_.outcome.shown = frame_.outcome.pose_answer_follows = shown;
   if (shown) {
-    const Head head = head_of(views_);
-    shown_.push_back({display_time_, timing.predicted_display_ns, head.position_m, head.orientation});
+    const Head head = head_of(frame_.views);
+    shown_.push_back({frame_.display_time, timing.predicted_display_ns, head.position_m, head.orientation});
   }
 }
 
 std::vector<PoseError> OpenXrSource::take_pose_errors() {
   std::vector<PoseError> errors;
-  const std::int64_t now = now_ns();
-  std::vector<XrView> views = views_;
-  while (!shown_.empty() && shown_.front().predicted_display_ns < now) {
+  while (!shown_.empty() && shown_.front().predicted_display_ns < now_ns()) {
     const ShownPose pose = shown_.front();
     shown_.pop_front();
-    if (now - pose.predicted_display_ns > kPoseHistory_ns || !locate_views(pose.time, views)) continue;
+    if (now_ns() - pose.predicted_display_ns > kPoseHistory_ns) {
+      errors.push_back({.predicted_display_ns = pose.predicted_display_ns, .answer = PoseAnswer::kTooLate});
+      continue;
+    }
+    const std::vector<XrView> views = locate_views(pose.time);
+    if (views.empty()) {
+      errors.push_back({.predicted_display_ns = pose.predicted_display_ns, .answer = PoseAnswer::kRefused});
+      continue;
+    }
     const Head head = head_of(views);
     const glm::dquat turn = glm::conjugate(pose.orientation) * head.orientation;
     const double angle_rad = 2.0 * std::atan2(glm::length(glm::dvec3(turn.x, turn.y, turn.z)), std::abs(turn.w));
-    errors.push_back({pose.predicted_display_ns, glm::distance(head.position_m, pose.position_m) * 1e3,
-                      glm::degrees(angle_rad)});
+    errors.push_back({pose.predicted_display_ns, PoseAnswer::kMeasured,
+                      glm::distance(head.position_m, pose.position_m) * 1e3, glm::degrees(angle_rad)});
   }
   return errors;
 }

@@ -4,6 +4,8 @@
 
 #include <deque>
 #include <memory>
+#include <mutex>
+#include <optional>
 #include <vector>
 
 #include "content/scene/space.h"
@@ -37,18 +39,19 @@ class OpenXrSource final : public FrameSource {
   void begin(FrameTiming& timing) override;
   std::vector<ViewPose> locate(const FrameTiming& timing, ViewPose* head) override;
   VkExtent2D view_extent() const override { return extent_; }
-  std::uint32_t view_count() const override { return static_cast<std::uint32_t>(views_.size()); }
+  std::uint32_t view_count() const override { return view_count_; }
   VkFormat color_format() const override { return format_; }
   VkFormat depth_format() const override { return depth_format_; }
   void set_depth_range(const DepthRange& range) override { depth_range_ = range; }  // in metres of the scene
   FrameTarget acquire() override;
-  // The layer states the poses of the last locate; of `rendered_views` it takes the fields of view, which differ from
-  // the located ones only where a path is replayed.
+  // The layer states the poses of the last locate that had valid ones; of `rendered_views` it takes the fields of view,
+  // which differ from the located ones only where a path is replayed.
   void end(const FrameTiming& timing, const std::vector<ViewPose>& rendered_views) override;
   float fade() const override { return locomotion_.fade(); }
   const FloorArc* aim() const override { return locomotion_.aim(); }
   float vignette() const override { return locomotion_.vignette(); }
   bool head_is_real() const override { return true; }
+  std::optional<FrameOutcome> outcome() const override { return frame_.outcome; }
   std::vector<PoseError> take_pose_errors() override;
   void finish() override;
 
@@ -61,6 +64,12 @@ class OpenXrSource final : public FrameSource {
     std::int64_t predicted_display_ns = 0;
     glm::dvec3 position_m{0.0};
     glm::dquat orientation{1.0, 0.0, 0.0, 0.0};
+  };
+  // The frame under way.
+  struct Frame {
+    XrTime display_time = 0;    // as the runtime gave it
+    std::vector<XrView> views;  // of its last locate that gave valid ones; empty = none yet
+    FrameOutcome outcome;
   };
   struct Head {
     glm::dvec3 position_m{0.0};
@@ -75,7 +84,9 @@ class OpenXrSource final : public FrameSource {
   // Whether an image of it is held now; else the display is lost.
   bool acquire(OpenXrSwapchain& swapchain);
   void on_session_change(XrSessionState next);
-  bool locate_views(XrTime time, std::vector<XrView>& views);
+  // Empty: no valid pose for that time, or the runtime is gone.
+  std::vector<XrView> locate_views(XrTime time);
+  [[nodiscard]] std::unique_lock<std::mutex> lock_queue();
   static Head head_of(const std::vector<XrView>& views);
   static HeadPose in_rig(const Head& head);
   void move(double dt_s, XrTime time);
@@ -90,6 +101,7 @@ class OpenXrSource final : public FrameSource {
   std::unique_ptr<OpenXrInput> input_;
   XrOwned<XrSpace, xrDestroySpace> space_;
   RigFloor rig_floor_;  // in the session's space
+  XrReferenceSpaceType space_type_ = XR_REFERENCE_SPACE_TYPE_LOCAL;
   std::string space_name_;
   XrEnvironmentBlendMode blend_mode_ = XR_ENVIRONMENT_BLEND_MODE_OPAQUE;
 
@@ -100,10 +112,11 @@ class OpenXrSource final : public FrameSource {
   VkFormat depth_format_ = VK_FORMAT_UNDEFINED;
   DepthRange depth_range_;
 
-  std::vector<XrView> views_;  // of the last locate
-  bool views_valid_ = false;
-  XrTime display_time_ = 0;    // of the frame under way, as the runtime gave it
+  std::uint32_t view_count_ = 0;
+  Frame frame_;
+  std::optional<Head> head_;  // of the last valid views, whichever frame's
   XrTime space_changes_at_ = 0;
+  bool warned_of_time_ = false;
   bool rig_placed_ = false;
   std::deque<ShownPose> shown_;
 };

@@ -14,30 +14,32 @@
 #include "xr/display.h"
 #include "xr/latency/ledger.h"
 #include "xr/latency/run_info.h"
+#include "xr/walk_rooms.h"
 
 namespace probewalk {
 
 struct WalkOptions {
-  std::filesystem::path pack;  // a folder, or an address (http:// or https://)
+  std::filesystem::path pack;                    // a folder, or an address (http:// or https://)
   DisplayOptions display;
-  std::optional<std::filesystem::path> path;      // replayed; overrides the views of every display
-  std::optional<std::filesystem::path> record;    // the path walked, with views, is written here
-  std::optional<std::filesystem::path> report;    // directory for the report's files
-  std::optional<std::filesystem::path> pictures;  // directory for the eyes' pictures
-  std::uint64_t picture_every = 1;                // frames from one picture to the next
-  std::optional<std::uint64_t> frames;            // submitted, then the walk ends
-  std::optional<double> seconds;                  // of the display's clock, then the walk ends
-  std::optional<bool> settle;                     // wait for the rooms that each pose wants; default: offscreen only
-  std::uint64_t budget_bytes = kUnlimitedBudget;  // device memory for probes
+  std::optional<std::filesystem::path> path;     // replayed; overrides the views of every display
+  std::optional<std::filesystem::path> record;   // the path walked, with views, is written here
+  std::optional<std::filesystem::path> report;   // directory for the report's files
+  std::optional<std::filesystem::path> pictures; // directory for the eyes' pictures
+  std::uint64_t picture_every = 1;               // frames from one picture to the next
+  std::optional<std::uint64_t> frames;           // submitted, then the walk ends
+  std::optional<double> seconds;                 // of the display's clock, then the walk ends
+  std::optional<bool> settle;                    // wait for the rooms that each pose wants; default: offscreen only
+  std::uint64_t budget_bytes = kUnlimitedBudget; // device memory for probes
   unsigned loader_threads = 1;
-  CacheOptions cache;                  // of a pack on a web server
-  std::uint32_t samples = 1;           // rays of a pixel at an edge: 1, 2 or 4
-  std::string foveation = "off";       // a name of foveation_levels()
-  TracerChoice choice;                 // how rays are answered
-  const BaselineMaps* maps = nullptr;  // of a choice that needs some
-  std::optional<double> exposure_ev;   // default: the pack's
-  std::string command;                 // the words that repeat the walk, for the report
-  DisplayOpener open_display;          // how the first display is opened; empty = probewalk::open_display
+  CacheOptions cache;                            // of a pack on a web server
+  std::uint32_t samples = 1;                     // rays of a pixel at an edge: 1, 2 or 4
+  std::string foveation = "off";                 // a name of foveation_levels()
+  TracerChoice choice;                           // how rays are answered
+  const BaselineMaps* maps = nullptr;            // of a choice that needs some
+  std::optional<double> exposure_ev;             // default: the pack's
+  std::string command;                           // the words that repeat the walk, for the report
+  DisplayOpener open_display;                    // how the first display is opened; empty = probewalk::open_display
+  ChunkOpener open_chunks;                       // where the pack's chunks come from; empty = probewalk::open_source
 };
 
 struct WalkResult {

@@ -11,6 +11,7 @@
 #include "render/view.h"
 #include "shaders/shared/display_transform.h"
 #include "xr/latency/clock.h"
+#include "xr/latency/stopwatch.h"
 #include "xr/mirror.h"
 #include "xr/picture_saver.h"
 
@@ -18,15 +19,6 @@ namespace probewalk {
 namespace {
 
 constexpr auto kIdleSleep = std::chrono::milliseconds(5);
-
-template <typename Work>
-Interval timed(const Work& work) {
-  Interval interval;
-  interval.begin = now_ns();
-  work();
-  interval.end = now_ns();
-  return interval;
-}
 
 }  // namespace
 
@@ -40,7 +32,9 @@ WalkLeg::WalkLeg(const WalkOptions& options, const Pack& pack, const Display& di
       progress_(progress),
       settle_(options.settle.value_or(source_.kind() == "offscreen" && !books.left_ns)),
       rooms_(pack, *display.device,
-             {options.budget_bytes, options.loader_threads, options.cache, options.report.has_value(), !settle_}, progress),
+             {options.budget_bytes, options.loader_threads, options.cache, options.report.has_value(), !settle_,
+              options.open_chunks},
+             progress),
       baselines_(options.choice.needs_maps() && options.maps != nullptr
                      ? std::make_unique<BaselineStore>(*display.device, *options.maps, options.choice)
                      : nullptr),
@@ -57,6 +51,7 @@ WalkLeg::WalkLeg(const WalkOptions& options, const Pack& pack, const Display& di
   settings_.exposure = exposure_from_ev(static_cast<float>(options.exposure_ev.value_or(pack.manifest().exposure_ev)));
   settings_.depth = depth_range_of(pack.manifest().bounds);
   source_.set_depth_range(settings_.depth);
+  pipelines_built_ = display_.device->pipelines_built();
   if (baselines_) {
     progress.note(fmt::format("maps for {}: {:.1f} MiB on the device", name_of(options.choice),
                               static_cast<double>(baselines_->device_bytes()) / (1 << 20)));
@@ -101,9 +96,6 @@ bool WalkLeg::frame() {
   FrameTiming timing;
   record.wait = timed([&] { timing = source_.wait(); });
   if (timing.predicted_display_ns == 0) return true;  // lost while waiting: the next poll says so
-  // Asked for time stamps, some drivers (lavapipe) wait for the frames in flight.
-  const Interval answers = timed([&] { take_late_answers(); });
-  record.blocked_ns += answers.end - answers.begin;
   record.begin = timed([&] { source_.begin(timing); });
   record.predicted_display = timing.predicted_display_ns;
   record.period = timing.period_ns;
@@ -118,8 +110,22 @@ bool WalkLeg::frame() {
   record.end = timed([&] { source_.end(timing, views); });
   if (over) return false;
   if (drawn != 0 && books_.left_ns) note_arrival();
-  record.should_render = drawn != 0;
+  bool shown = drawn != 0;
+  if (const auto outcome = source_.outcome()) {
+    record.wait = outcome->wait;
+    record.begin = outcome->begin;
+    record.end = outcome->end;
+    record.blocked_ns += outcome->blocked_ns;
+    shown = shown && outcome->shown;
+    if (outcome->pose_answer_follows) record.pose_answer = PoseAnswer::kPending;
+  }
+  record.should_render = shown;
+  const std::uint32_t built = display_.device->pipelines_built();
+  record.pipelines_built = built - std::exchange(pipelines_built_, built);
   book_.add(record, drawn);
+  // Between the frames: asked for time stamps, some drivers (lavapipe) wait for the frames in flight, and a runtime's
+  // answers take their time too.
+  book_.add_ledger_time(timed([&] { take_late_answers(); }));
   if (books_.frames) progress_.advance(1);
   ++books_.frame;
   return true;
@@ -159,6 +165,7 @@ std::vector<ViewPose> WalkLeg::draw(const FrameTiming& timing, FrameRecord& reco
 
   record.locate_late = timed([&] {
     std::vector<ViewPose> late = books_.view.locate(source_, timing, head);
+    record.early_pose = late.empty();
     if (!late.empty()) views = std::move(late);
   });
   write(views);
@@ -176,10 +183,9 @@ std::vector<ViewPose> WalkLeg::draw(const FrameTiming& timing, FrameRecord& reco
 void WalkLeg::write(const std::vector<ViewPose>& views) {
   std::vector<ViewConstants> constants;
   for (const ViewPose& view : views) {
-    constants.push_back(view_constants(
-        view.position_m, view.orientation,
-        {view.fov_left_rad, view.fov_right_rad, view.fov_up_rad, view.fov_down_rad},
-        static_cast<int>(source_.view_extent().width)));
+    constants.push_back(view_constants(view.position_m, view.orientation,
+                                       {view.fov_left_rad, view.fov_right_rad, view.fov_up_rad, view.fov_down_rad},
+                                       static_cast<int>(source_.view_extent().width)));
   }
   // A replay is shown as it was recorded: nobody's head is in a wall.
   const float moved = books_.view.is_replay() ? 0.0f : std::max(source_.fade(), wall_fade_.darkness());

@@ -65,6 +65,7 @@ class WalkLeg {
   FrameSettings settings_;
   WallFade wall_fade_;
   FrameBook book_;
+  std::uint32_t pipelines_built_ = 0;  // before the frame under way
   bool screenshot_ = false;
 };
 

@@ -13,11 +13,36 @@ namespace {
 
 constexpr auto kSettlePatience = std::chrono::minutes(5);
 constexpr double kVelocitySmoothing_s = 0.2;  // head bob and sway average out
+// Of an arena whose pieces come and go; with less in it nearly every level finds room (ProbeArenaTest).
+constexpr double kUsableShare = 7.0 / 8.0;
 constexpr double kJump_m = 0.5;               // further in one frame is a teleport, not a motion
 
-StreamerOptions streamer_options(const WalkRoomsOptions& options, const ChunkSource& source) {
+// What all rooms at all levels can take.
+std::uint64_t bytes_of_all(const Manifest& manifest) {
+  std::uint64_t padding = 0;
+  for (const RoomEntry& room : manifest.rooms) padding += room.levels.size() * room.probe_count * kMostPadding_bytes;
+  return manifest.bytes_device() + padding;
+}
+
+ProbeStoreOptions store_options(const WalkRoomsOptions& options, const Manifest& manifest) {
+  ProbeStoreOptions store{.frame_slots = kFrameSlots, .fade_frames = options.fade_levels ? WalkRooms::kLevelFadeFrames : 0};
+  // A stated budget is taken at once: no other can have it later. Without one memory is taken as it is needed.
+  if (options.budget_bytes != kUnlimitedBudget) {
+    const auto all = static_cast<std::uint64_t>(static_cast<double>(bytes_of_all(manifest)) / kUsableShare);
+    store.arena_bytes = std::min(options.budget_bytes, all);
+  }
+  return store;
+}
+
+StreamerOptions streamer_options(const WalkRoomsOptions& options, const Device& device,
+                                 const ChunkSource& source) {
   StreamerOptions streamer;
-  streamer.residency.budget_bytes = options.budget_bytes;
+  if (options.budget_bytes != kUnlimitedBudget) {
+    streamer.residency.budget_bytes = options.budget_bytes;
+    streamer.residency.usable_share = kUsableShare;
+  } else {
+    streamer.residency.budget_bytes = device.free_bytes();
+  }
   // Threads that wait for a far source do not compute.
   streamer.loader.threads = std::max(options.threads, source.parallel_reads());
   streamer.loader.decoders = options.threads;
@@ -54,13 +79,15 @@ WalkRooms::WalkRooms(const Pack& pack, const Device& device, const WalkRoomsOpti
     : pack_(pack),
       progress_(progress),
       options_(options),
-      source_(open_source(pack.path().string(), options.cache)),
+      source_(options.open_chunks ? options.open_chunks(pack.path().string(), options.cache)
+                                  : open_source(pack.path().string(), options.cache)),
       store_(device, pack.manifest().grid, static_cast<std::uint32_t>(pack.manifest().probe_positions_m.size()),
-             ProbeStoreOptions{.frame_slots = kFrameSlots, .fade_frames = options.fade_levels ? kLevelFadeFrames : 0}),
+             store_options(options, pack.manifest())),
       free_air_(pack.manifest().grid, pack.manifest().probe_positions_m.size()),
       streamer_(
           pack.manifest(), *source_, [this](LoadedLevel&& loaded) { deliver(std::move(loaded)); },
-          [this](LevelKey key) { store_.evict(key.room, key.level); }, streamer_options(options, *source_)) {}
+          [this](LevelKey key) { store_.evict(key.room, key.level); },
+          streamer_options(options, device, *source_)) {}
 
 // On a loader thread.
 void WalkRooms::deliver(LoadedLevel&& loaded) {
@@ -81,6 +108,7 @@ void WalkRooms::update(const ViewPose& head, std::int64_t display_ns, FrameRecor
   }
   last_display_ns_ = display_ns;
   walker_.head_m = head.position_m;
+  walker_.look = head.orientation * glm::dvec3(0, 0, -1);
   streamer_.update(walker_);
   report_errors();
 

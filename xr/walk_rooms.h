@@ -7,6 +7,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <string>
 
 #include "content/pack/pack_io.h"
 #include "content/progress.h"
@@ -20,12 +21,15 @@
 
 namespace probewalk {
 
+using ChunkOpener = std::function<std::unique_ptr<ChunkSource>(const std::string& pack, const CacheOptions& cache)>;
+
 struct WalkRoomsOptions {
   std::uint64_t budget_bytes = kUnlimitedBudget;
   unsigned threads = 1;      // that decode
   CacheOptions cache;        // of a pack on a web server
   bool keep_loads = false;   // for a report: facts() lists them
   bool fade_levels = false;  // a finer level takes over gradually
+  ChunkOpener open_chunks;   // empty = open_source
 };
 
 class WalkRooms {

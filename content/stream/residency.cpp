@@ -24,6 +24,14 @@ constexpr double kViewWeight = 0.5;        // of a room that fills the view
 constexpr double kBehindWeight = 0.25;     // of one that would, if the head turned
 constexpr std::uint32_t kFillRooms = 16;   // looked at in one frame for the rest of a small building
 
+ResidencyOptions usable(ResidencyOptions options) {
+  if (options.usable_share < 1.0 && options.budget_bytes != kUnlimitedBudget) {
+    options.budget_bytes =
+        static_cast<std::uint64_t>(options.usable_share * static_cast<double>(options.budget_bytes));
+  }
+  return options;
+}
+
 }  // namespace
 
 std::uint64_t minimum_budget(const Manifest& manifest, const ResidencyOptions& options) {
@@ -42,10 +50,11 @@ std::uint64_t minimum_budget(const Manifest& manifest, const ResidencyOptions& o
 
 Residency::Residency(const Manifest& manifest, const ResidencyOptions& options)
     : graph_(manifest.rooms, manifest.portals),
-      options_(options),
-      planner_(options.budget_bytes, options.most_loads) {
-  const std::uint64_t least = minimum_budget(manifest, options);
-  if (options.budget_bytes < least) {
+      options_(usable(options)),
+      planner_(options_.budget_bytes, options.most_loads) {
+  if (options_.budget_bytes < minimum_budget(manifest, options)) {
+    const auto least = static_cast<std::uint64_t>(
+        std::ceil(static_cast<double>(minimum_budget(manifest, options)) / options.usable_share));
     constexpr std::uint64_t kMiB = 1 << 20;
     throw BadUsage(fmt::format("a device budget of {:.1f} MiB is too small for this pack; the smallest that works is "
                                "--device-budget {}",

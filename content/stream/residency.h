@@ -24,6 +24,8 @@ namespace probewalk {
 
 struct ResidencyOptions {
   std::uint64_t budget_bytes = kUnlimitedBudget;  // device memory for probes
+  // Of the budget: what may be held. The rest is lost between pieces of memory that come and go.
+  double usable_share = 1.0;
   std::uint32_t coarse_portals = 3;
   std::uint32_t fine_portals = 2;
   double patience_s = 3.0;        // a room reached this much later counts 1/e as much
@@ -59,7 +61,7 @@ class Residency final : public StreamingPolicy {
   void fill(ResidencyDecision& decision, const LevelBook& book, std::uint64_t retired_bytes);
 
   RoomGraph graph_;
-  ResidencyOptions options_;
+  ResidencyOptions options_;  // with the usable bytes for the budget
   ResidencyPlanner planner_;
   std::int64_t room_ = -1;      // the walker's at the last decision
   bool all_coarse_ = false;     // every room's coarsest level is kept, wherever the walker is

@@ -19,6 +19,7 @@
 #include "content/bake/placement/head_space.h"
 #include "content/bake/plan/planned_maps.h"
 #include "content/bake/plan/planner.h"
+#include "content/probe/host_address.h"
 #include "content/probe/probe_set.h"
 #include "content/scene/scene.h"
 
@@ -36,11 +37,6 @@ struct Measured {
   std::uint64_t bytes = 0;
   double seconds = 0.0;
 };
-
-glm::uvec2 address_of(const void* memory) {
-  const auto bits = static_cast<std::uint64_t>(reinterpret_cast<std::uintptr_t>(memory));
-  return {static_cast<std::uint32_t>(bits), static_cast<std::uint32_t>(bits >> 32)};
-}
 
 class Table {
  public:
@@ -142,8 +138,8 @@ class Table {
 
   RoomError measure(const ProbeGrid& grid, const std::vector<ProbeRecord>& records) const {
     ProbeView view{grid_constants(grid, records.size()), default_dials(double(exposure_.radiance_scale))};
-    view.grid.table_address = address_of(grid.probe.data());
-    view.grid.probes_address = address_of(records.data());
+    view.grid.table_address = host_address(grid.probe.data());
+    view.grid.probes_address = host_address(records.data());
     return mean_error(measure_error(views_, view, rays_, float(exposure_.exposure_ev), space_.rooms.size()),
                       views_.room_share);
   }

@@ -7,6 +7,7 @@
 
 #include "gpu_test.h"
 #include "probe_room.h"
+#include "render/check.h"
 #include "render/one_shot.h"
 #include "render/ray_batch.h"
 
@@ -167,6 +168,80 @@ TEST_F(ProbeStoreTest, AnEvictionWhileItsCopiesRunIsSafe) {
   EXPECT_TRUE(store.idle());
   frame(store);
   EXPECT_EQ(store.device_bytes(), 0u);
+}
+
+TEST_F(ProbeStoreTest, CopiesApartKeepToTheBudgetAndShowWhenTheyHaveArrived) {
+  ProbeStore store(device, room.grid, room.probe_count(),
+                   {.upload_bytes_per_frame = 10000, .always_stage = true, .copy_apart = true});
+  ProbeStore written(device, room.grid, room.probe_count());
+  written.upload(room.upload());
+  written.settle();
+  store.upload(room.upload());
+  EXPECT_FALSE(store.wait_before()) << "nothing has been copied yet";
+  const std::uint64_t bytes = ProbeStore::bytes_of(room.probes);
+  std::uint64_t before = 0;
+  for (int k = 0; k < 10000 && store.level_shown(0) < 0; ++k) {
+    EXPECT_EQ(store.queue_depth(), 1u);
+    EXPECT_EQ(frame(store), 0u) << "nothing by the frame's commands";
+    EXPECT_LE(store.bytes_uploaded() - before, 10000u);
+    before = store.bytes_uploaded();
+  }
+  ASSERT_EQ(store.level_shown(0), 0);
+  EXPECT_EQ(store.bytes_uploaded(), bytes);
+  EXPECT_EQ(store.queue_depth(), 0u);
+  EXPECT_TRUE(store.wait_before()) << "the frame waits for what another queue wrote";
+  store.settle();
+  EXPECT_EQ(ask(store).t_m, ask(written).t_m);
+  EXPECT_EQ(ask(store).radiance, ask(written).radiance);
+}
+
+TEST_F(ProbeStoreTest, AnEvictionWhileCopiesRunApartIsSafe) {
+  ProbeStore store(device, room.grid, room.probe_count(),
+                   {.upload_bytes_per_frame = 10000, .always_stage = true, .copy_apart = true});
+  for (std::uint32_t k = 0; k < 20; ++k) {
+    store.upload(room.upload(k % 2));
+    for (std::uint32_t wait = 0; wait < k; ++wait) frame(store);
+    store.evict(0, k % 2);
+    frame(store);
+  }
+  store.settle();
+  frame(store);
+  EXPECT_EQ(store.level_shown(0), -1);
+  EXPECT_TRUE(store.idle());
+  EXPECT_EQ(store.device_bytes(), 0u);
+}
+
+TEST_F(ProbeStoreTest, AnArenaIsTakenAtOnceAndRefusesWhatDoesNotFit) {
+  const std::uint64_t bytes = ProbeStore::bytes_of(room.probes);
+  ProbeStore store(device, room.grid, room.probe_count(), {.arena_bytes = bytes + bytes / 2});
+  EXPECT_EQ(store.reserved_bytes(), bytes + bytes / 2);
+  const std::uint64_t taken = device.allocated_bytes();
+  store.upload(room.upload(0));
+  frame(store);
+  EXPECT_THROW(store.upload(room.upload(1)), VulkanError);
+  frame(store);
+  EXPECT_EQ(store.level_shown(0), 0) << "what is there stays";
+  EXPECT_EQ(store.device_bytes(), bytes);
+  store.evict(0, 0);
+  frame(store);
+  frame(store);
+  store.upload(room.upload(1));
+  store.settle();
+  EXPECT_EQ(store.level_shown(0), 1);
+  EXPECT_EQ(ask(store).answer, kClassHit);
+  EXPECT_EQ(store.reserved_bytes(), bytes + bytes / 2);
+  EXPECT_LE(device.allocated_bytes(), taken) << "nothing more is asked of the driver";
+}
+
+TEST_F(ProbeStoreTest, WithoutAnArenaMemoryGoesBackWhenRoomsGo) {
+  ProbeStore store(device, room.grid, room.probe_count());
+  EXPECT_EQ(store.reserved_bytes(), 0u);
+  store.upload(room.upload());
+  EXPECT_GE(store.reserved_bytes(), ProbeStore::bytes_of(room.probes));
+  frame(store);
+  store.evict(0, 0);
+  frame(store);
+  EXPECT_EQ(store.reserved_bytes(), 0u);
 }
 
 TEST_F(ProbeStoreTest, TakesUploadsFromOtherThreadsWhileFramesRun) {

@@ -2,6 +2,7 @@
 // 0 = did not happen.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 namespace probewalk {
@@ -12,10 +13,22 @@ struct Interval {
   std::int64_t end = 0;
 };
 
+// Whether the runtime was asked, after the fact, what the pose of a frame should have been.
+enum class PoseAnswer : std::uint8_t {
+  kNone,      // this display has no later answer, or the frame was not shown
+  kPending,   // the walk ended before the frame's time had come
+  kMeasured,  // it answered: the pose errors are known
+  kTooLate,   // we asked when the runtime no longer had to know
+  kRefused,   // it had no valid answer
+};
+inline constexpr std::size_t kPoseAnswers = 5;
+
 struct FrameRecord {
   std::uint64_t frame_id = 0;
   Interval wait, begin, locate_early, record, locate_late, submit, end;
-  // Of wait.end .. end.end: time spent blocked on a swapchain image or on the device, wherever it falls.
+  // The ledger's own questions (device times, poses after the fact): after end.end, before the next wait.
+  Interval ledger;
+  // Of wait.end .. end.end: time spent blocked on a swapchain image, on the device or for its queue, wherever it falls.
   std::int64_t blocked_ns = 0;
   std::uint32_t pipelines_built = 0;
   // Device, on the same axis when clock_calibrated.
@@ -27,7 +40,9 @@ struct FrameRecord {
   std::int64_t period = 0;
   bool should_render = true;
   bool discarded = false;
+  bool early_pose = false;  // shown with the early pose, since the late one was not valid
   // Pose used against the runtime's later answer; negative = not measured.
+  PoseAnswer pose_answer = PoseAnswer::kNone;
   double pose_error_mm = -1.0;
   double pose_error_deg = -1.0;
   // Streaming.

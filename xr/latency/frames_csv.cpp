@@ -24,7 +24,7 @@ struct Column {
 };
 
 template <typename T>
-Column column(std::string name, T FrameRecord::*member) {
+Column column(std::string name, T FrameRecord::* member) {
   Column c;
   c.name = std::move(name);
   if constexpr (std::is_floating_point_v<T>) {
@@ -38,7 +38,7 @@ Column column(std::string name, T FrameRecord::*member) {
   return c;
 }
 
-Column column(std::string name, Interval FrameRecord::*interval, std::int64_t Interval::*side) {
+Column column(std::string name, Interval FrameRecord::* interval, std::int64_t Interval::* side) {
   Column c;
   c.name = std::move(name);
   c.integer = [=](const FrameRecord& f) { return f.*interval.*side; };
@@ -60,6 +60,7 @@ std::vector<Column> make_columns() {
       {"gpu_trace", &FrameRecord::gpu_trace},
       {"gpu_resolve", &FrameRecord::gpu_resolve},
       {"mirror", &FrameRecord::mirror},
+      {"ledger", &FrameRecord::ledger},
   };
   for (const auto& [name, interval] : intervals) {
     columns.push_back(column(std::string(name) + "_begin", interval, &Interval::begin));
@@ -83,6 +84,8 @@ std::vector<Column> make_columns() {
   columns.push_back(column("device_bytes", &FrameRecord::device_bytes));
   columns.push_back(column("pose_error_mm", &FrameRecord::pose_error_mm));
   columns.push_back(column("pose_error_deg", &FrameRecord::pose_error_deg));
+  columns.push_back(column("pose_answer", &FrameRecord::pose_answer));
+  columns.push_back(column("early_pose", &FrameRecord::early_pose));
   return columns;
 }
 
@@ -149,8 +152,8 @@ std::string frames_csv(const Ledger& ledger) {
       separator = ",";
     }
     const bool counts = i >= first;
-    const FrameQuantities q = derive(frames[i], i != 0 && i != first ? &frames[i - 1] : nullptr,
-                                     ledger.options().has_deadlines);
+    const FrameQuantities q =
+        derive(frames[i], i != 0 && i != first ? &frames[i - 1] : nullptr, ledger.options().has_deadlines);
     fmt::format_to(out, ",{}", counts ? 0 : 1);
     for (const auto& value : {q.frame_ns, q.cpu_busy_ns, q.cpu_wait_ns, q.gpu_busy_ns, q.gpu_trace_ns,
                               q.prediction_horizon_ns, q.deadline_margin_ns}) {

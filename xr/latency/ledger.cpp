@@ -11,12 +11,15 @@ namespace {
 constexpr std::array<QuantityDefinition, 9> kDefinitions{{
     {"frame", "ns", "wait_end(n) - wait_end(n-1): from one frame's start to the next one's."},
     {"cpu_busy", "ns",
-     "wait_end to end_end, less the time blocked on a swapchain image or on the device. Rendered frames only."},
+     "wait_end to end_end, less the time blocked on a swapchain image, on the device or for its queue. The ledger's "
+     "own "
+     "questions come after it. Rendered frames only."},
     {"cpu_wait", "ns", "Time inside the runtime's wait for the next frame."},
     {"gpu_busy", "ns", "gpu_begin to gpu_end, from device time stamps. Rendered frames only."},
     {"gpu_trace", "ns", "The trace pass alone, from device time stamps."},
     {"prediction_horizon", "ns",
-     "predicted_display - locate_late_end: how far ahead the pose used was predicted."},
+     "predicted_display - locate_late_end: how far ahead the pose used was predicted (locate_early_end where the late "
+     "pose was not valid)."},
     {"deadline_margin", "ns",
      "deadline - gpu_end, where deadline = predicted_display - period: the application's convention, not the "
      "compositor's. Negative = late."},
@@ -46,14 +49,16 @@ std::optional<std::int64_t> scaled(const std::optional<double>& value) {
 }
 
 std::array<std::optional<std::int64_t>, kDefinitions.size()> in_definition_order(const FrameQuantities& q) {
-  return {q.frame_ns,     q.cpu_busy_ns,           q.cpu_wait_ns,        q.gpu_busy_ns,
-          q.gpu_trace_ns, q.prediction_horizon_ns, q.deadline_margin_ns, scaled(q.pose_error_mm),
-          scaled(q.pose_error_deg)};
+  return {q.frame_ns,           q.cpu_busy_ns,           q.cpu_wait_ns,
+          q.gpu_busy_ns,        q.gpu_trace_ns,          q.prediction_horizon_ns,
+          q.deadline_margin_ns, scaled(q.pose_error_mm), scaled(q.pose_error_deg)};
 }
 
 }  // namespace
 
-std::span<const QuantityDefinition> quantity_definitions() { return kDefinitions; }
+std::span<const QuantityDefinition> quantity_definitions() {
+  return kDefinitions;
+}
 
 FrameQuantities derive(const FrameRecord& frame, const FrameRecord* previous, bool has_deadlines) {
   FrameQuantities q;
@@ -67,7 +72,8 @@ FrameQuantities derive(const FrameRecord& frame, const FrameRecord* previous, bo
   if (frame.should_render) q.gpu_busy_ns = device_length(frame.gpu);
   q.gpu_trace_ns = device_length(frame.gpu_trace);
   if (has_deadlines && frame.predicted_display != 0) {
-    if (frame.locate_late.end != 0) q.prediction_horizon_ns = frame.predicted_display - frame.locate_late.end;
+    const Interval& located = frame.early_pose ? frame.locate_early : frame.locate_late;
+    if (located.end != 0) q.prediction_horizon_ns = frame.predicted_display - located.end;
     if (q.gpu_busy_ns && frame.clock_calibrated) {
       q.deadline_margin_ns = frame.predicted_display - frame.period - frame.gpu.end;
     }
@@ -132,6 +138,8 @@ Summary Ledger::summary() const {
     if (frame.clock_calibrated && q.gpu_busy_ns) {
       summary.clock_error_ns = std::max(summary.clock_error_ns.value_or(0), frame.clock_deviation_ns);
     }
+    ++summary.pose_answers[std::min(static_cast<std::size_t>(frame.pose_answer), kPoseAnswers - 1)];
+    summary.early_pose_frames += frame.early_pose ? 1 : 0;
     summary.missed += q.missed;
     summary.not_rendered += frame.should_render ? 0 : 1;
     // A discarded frame was never shown: its own refresh goes on with what was there.

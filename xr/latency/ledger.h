@@ -2,6 +2,7 @@
 // numbers out. The definitions are those of `quantity_definitions()`, which every report prints.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -30,7 +31,7 @@ struct FrameQuantities {
   std::optional<std::int64_t> cpu_busy_ns;            // wait_end to end_end less time blocked; rendered frames only
   std::optional<std::int64_t> gpu_busy_ns;            // gpu_begin to gpu_end
   std::optional<std::int64_t> gpu_trace_ns;           // the trace pass
-  std::optional<std::int64_t> prediction_horizon_ns;  // predicted_display - locate_late_end
+  std::optional<std::int64_t> prediction_horizon_ns;  // predicted_display - end of the locate that gave the pose used
   std::optional<std::int64_t> deadline_margin_ns;     // (predicted_display - period) - gpu_end
   std::optional<double> pose_error_mm;
   std::optional<double> pose_error_deg;
@@ -49,9 +50,11 @@ struct QuantitySummary {
 };
 
 struct Summary {
-  std::uint64_t frames = 0;         // without warm-up
-  std::uint64_t warmup_frames = 0;  // frames + warmup_frames = frames added
-  std::int64_t period_ns = 0;       // median
+  std::uint64_t frames = 0;                                // without warm-up
+  std::uint64_t warmup_frames = 0;                         // frames + warmup_frames = frames added
+  std::int64_t period_ns = 0;                              // median
+  std::array<std::uint64_t, kPoseAnswers> pose_answers{};  // frames by PoseAnswer
+  std::uint64_t early_pose_frames = 0;                     // shown with the early pose: the late one was not valid
   std::uint64_t missed = 0;
   std::uint64_t discarded = 0;
   std::uint64_t not_rendered = 0;

@@ -7,9 +7,10 @@
 #include <iterator>
 #include <vector>
 
-#include "xr/latency/report_text.h"
+#include "xr/latency/comparison_page.h"
 #include "xr/latency/report_charts.h"
 #include "xr/latency/report_style.h"
+#include "xr/latency/report_text.h"
 
 namespace probewalk {
 namespace {
@@ -26,7 +27,9 @@ std::string heading(const QuantitySummary& quantity) {
   return fmt::format("{} <span class=\"soft\">{}</span>", quantity.name, quantity.unit == "ns" ? "ms" : quantity.unit);
 }
 
-std::string percent(double fraction) { return fmt::format("{:.1f} %", 100.0 * fraction); }
+std::string percent(double fraction) {
+  return fmt::format("{:.1f} %", 100.0 * fraction);
+}
 
 // A table cell for a percentile: the value, or why there is none.
 std::string percentile_cell(const QuantitySummary& quantity, const PercentileRank& rank) {
@@ -244,21 +247,16 @@ std::string facts_table(std::span<const Run> runs, std::span<const Summary> summ
   return html + "</table></div>\n";
 }
 
-// Percentiles of all runs next to each other, with the difference to the first.
+// Percentiles of all runs next to each other; what of their differences is more than spread, the comparison says.
 std::string comparison_table(std::span<const Run> runs, std::span<const Summary> summaries) {
   std::string html = "<div class=\"scroll\"><table><tr><th>quantity</th><th></th>";
   for (const Run& run : runs) html += "<th>" + html_escaped(run.name) + "</th>";
   html += "</tr>\n";
   const auto row = [&](const std::string& name, const std::string& what, const auto& value_of, const auto& text_of) {
     html += "<tr><td>" + name + "</td><td class=\"soft\">" + what + "</td>";
-    const std::optional<double> base = value_of(summaries[0]);
     for (std::size_t i = 0; i < runs.size(); ++i) {
       const std::optional<double> value = value_of(summaries[i]);
       html += "<td>" + (value ? text_of(*value) : kNone);
-      if (i > 0 && value && base && *base > 0.0) {
-        fmt::format_to(std::back_inserter(html), " <span class=\"soft\">{:+.1f} %</span>",
-                       100.0 * (*value / *base - 1.0));
-      }
       html += "</td>";
     }
     html += "</tr>\n";
@@ -267,7 +265,8 @@ std::string comparison_table(std::span<const Run> runs, std::span<const Summary>
     const QuantitySummary& quantity = summaries[0].quantities[k];
     for (const PercentileRank& rank : percentile_ranks()) {
       if (rank.p != 0.5 && rank.p != 0.99) continue;
-      row(heading(quantity), rank.label,
+      row(
+          heading(quantity), rank.label,
           [&](const Summary& summary) -> std::optional<double> {
             const auto value = summary.quantities[k].histogram.percentile(rank);
             return value ? std::optional(static_cast<double>(*value)) : std::nullopt;
@@ -280,7 +279,8 @@ std::string comparison_table(std::span<const Run> runs, std::span<const Summary>
   row(
       "stale run", "longest", [](const Summary& s) { return std::optional(static_cast<double>(s.stale_run_max)); },
       count);
-  row("within budget", "share", [](const Summary& s) { return s.within_budget_fraction; },
+  row(
+      "within budget", "share", [](const Summary& s) { return s.within_budget_fraction; },
       [](double value) { return percent(value); });
   row("frames", "n", [](const Summary& s) { return std::optional(static_cast<double>(s.frames)); }, count);
   return html + "</table></div>\n";
@@ -348,13 +348,13 @@ std::string definitions() {
 
 }  // namespace
 
-std::string report_page(std::span<const Run> runs) {
+std::string report_page(std::span<const Run> runs, const Comparison& comparison) {
   std::vector<Summary> summaries;
   for (const Run& run : runs) summaries.push_back(run.ledger.summary());
   const ChartScale scale = chart_scale(runs, summaries);
   const bool only = runs.size() == 1;
   const std::string title = only ? "Walk report" + (runs[0].info.pack.empty() ? "" : ": " + runs[0].info.pack)
-                                 : fmt::format("{} walks side by side", runs.size());
+                                 : fmt::format("{} walks compared", runs.size());
 
   std::string html =
       "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
@@ -368,11 +368,8 @@ std::string report_page(std::span<const Run> runs) {
                                      info.eye_height, info.views, info.device.name, info.started_utc)) +
             "</p>\n";
   } else {
-    html +=
-        "<p class=\"soft\">Differences are to the first run. Pictures share their scales. Percentiles of runs are "
-        "never "
-        "averaged.</p>\n<h2>Comparison</h2>\n" +
-        comparison_table(runs, summaries);
+    html += "<p class=\"soft\">Pictures share their scales. Percentiles of runs are never averaged.</p>\n" +
+            comparison_html(runs, comparison) + "<h2>Run by run</h2>\n" + comparison_table(runs, summaries);
   }
   for (std::size_t i = 0; i < runs.size(); ++i) html += run_section(runs[i], summaries[i], scale, only);
   html += "<h2>Machine, device, runtime, build</h2>\n" + facts_table(runs, summaries);

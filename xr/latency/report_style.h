@@ -43,6 +43,10 @@ svg path.framearea { fill: var(--frame-fill); } svg .frameline { stroke: var(--f
 svg .missed, svg .clipped { fill: var(--missed); } svg .discarded { fill: var(--discarded); } svg .bar { fill: var(--frame); } svg .beyond { fill: var(--missed); }
 svg .hit { fill: transparent; } svg .hit:hover { fill: var(--soft); opacity: 0.18; }
 .run + .run { border-top: 3px solid var(--rule); margin-top: 46px; }
+.headline { font-size: 17px; } ul { margin: 6px 0 10px; padding-left: 22px; } .banner ul { margin-bottom: 0; }
+.changes tr.head td { border-top: 1px solid var(--soft); } td.verdict { white-space: nowrap; font-weight: 600; color: var(--soft); }
+td.verdict.better { color: var(--good); } td.verdict.worse { color: var(--missed); } td.verdict.few { font-weight: 400; font-style: italic; }
+svg rect.change { opacity: 0.45; } svg .better { fill: var(--good); } svg .worse { fill: var(--missed); } svg .same { fill: var(--soft); }
 @media print { body { background: #fff; } .charts, svg, tr { break-inside: avoid; } }
 )css";
 

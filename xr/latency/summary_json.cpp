@@ -15,7 +15,9 @@ template <typename T>
 Json or_null(const std::optional<T>& value) {
   return value ? Json(*value) : Json();
 }
-Json text_or_null(const std::string& text) { return text.empty() ? Json() : Json(text); }
+Json text_or_null(const std::string& text) {
+  return text.empty() ? Json() : Json(text);
+}
 
 Json percentiles(const QuantitySummary& quantity) {
   const auto in_unit = [&](std::int64_t value) {
@@ -68,6 +70,14 @@ Json streaming_json(const Summary& summary, const StreamingFacts& facts) {
           {"device_budget_bytes", facts.device_budget_bytes > 0 ? Json(facts.device_budget_bytes) : Json()}};
 }
 
+Json pose_answers_json(const Summary& summary) {
+  const auto frames = [&](PoseAnswer answer) { return summary.pose_answers[static_cast<std::size_t>(answer)]; };
+  return {{"measured", frames(PoseAnswer::kMeasured)},
+          {"too_late", frames(PoseAnswer::kTooLate)},
+          {"refused", frames(PoseAnswer::kRefused)},
+          {"pending", frames(PoseAnswer::kPending)}};
+}
+
 Json worst_json(const std::vector<WorstFrame>& worst) {
   Json list = Json::array();
   for (const WorstFrame& frame : worst) {
@@ -101,8 +111,8 @@ void take(const Json& json, const char* key, T& value, const std::string& file) 
   try {
     value = found->get<T>();
   } catch (const Json::exception&) {
-    throw BadInput(fmt::format("{}: \"{}\" has the wrong type; give a directory that `probewalk walk --report` wrote",
-                               file, key));
+    throw BadInput(
+        fmt::format("{}: \"{}\" has the wrong type; give a directory that `probewalk walk --report` wrote", file, key));
   }
 }
 
@@ -140,6 +150,8 @@ std::string summary_json(const Ledger& ledger, const RunInfo& info) {
                {"not_rendered", summary.not_rendered},
                {"stale_run_max", summary.stale_run_max},
                {"within_budget_fraction", or_null(summary.within_budget_fraction)},
+               {"early_pose_frames", summary.early_pose_frames},
+               {"pose_answers", pose_answers_json(summary)},
                {"clock_error_ns", or_null(summary.clock_error_ns)},
                {"instrumentation_cost_fraction", or_null(info.instrumentation_cost_fraction)}};
   Json& table = json["percentiles"] = Json::object();

@@ -35,9 +35,8 @@ class TraceWriter {
   void span(unsigned track, const std::string& name, const Interval& interval, const std::string& args) {
     if (interval.begin == 0 || interval.end < interval.begin) return;
     begin_event();
-    fmt::format_to(out_, R"({{"name":{},"ph":"X","pid":1,"tid":{},"ts":{:.3f},"dur":{:.3f},"args":{}}})",
-                   quoted(name), track, microseconds(interval.begin - origin_ns_),
-                   microseconds(interval.end - interval.begin), args);
+    fmt::format_to(out_, R"({{"name":{},"ph":"X","pid":1,"tid":{},"ts":{:.3f},"dur":{:.3f},"args":{}}})", quoted(name),
+                   track, microseconds(interval.begin - origin_ns_), microseconds(interval.end - interval.begin), args);
   }
 
   void mark(const std::string& name, std::int64_t at_ns) {
@@ -114,10 +113,14 @@ std::string trace_json(const Ledger& ledger, const StreamingFacts& streaming) {
   for (std::size_t i = 0; i < frames.size(); ++i) {
     const FrameRecord& f = frames[i];
     const std::string args = fmt::format(R"({{"frame_id":{}}})", f.frame_id);
-    const std::pair<const char*, const Interval&> calls[] = {
-        {"wait", f.wait},     {"begin", f.begin},             {"locate_early", f.locate_early},
-        {"record", f.record}, {"locate_late", f.locate_late}, {"submit", f.submit},
-        {"end", f.end}};
+    const std::pair<const char*, const Interval&> calls[] = {{"wait", f.wait},
+                                                             {"begin", f.begin},
+                                                             {"locate_early", f.locate_early},
+                                                             {"record", f.record},
+                                                             {"locate_late", f.locate_late},
+                                                             {"submit", f.submit},
+                                                             {"end", f.end},
+                                                             {"ledger", f.ledger}};
     trace.span(kCalls, "frame", {f.wait.begin, f.end.end}, args);
     for (const auto& [name, interval] : calls) trace.span(kCalls, name, interval, args);
     if (f.clock_calibrated) {

@@ -14,17 +14,31 @@ namespace {
 
 // What an interval between two frame starts is made of. The first group tiles it; the others lie inside it.
 enum Stage : std::size_t {
-  kBegin, kLocateEarly, kRecord, kLocateLate, kSubmit, kEnd, kBetweenCalls, kWait,  // tile it
-  kStreaming, kMirror, kBlocked,                                                    // inside those
-  kGpuTrace, kGpuResolve, kGpuOther,                                                // on the device, beside them
+  kBegin,
+  kLocateEarly,
+  kRecord,
+  kLocateLate,
+  kSubmit,
+  kEnd,
+  kLedger,
+  kBetweenCalls,
+  kWait,  // tile it
+  kStreaming,
+  kMirror,
+  kBlocked,  // inside those
+  kGpuTrace,
+  kGpuResolve,
+  kGpuOther,  // on the device, beside them
   kStageCount
 };
 constexpr std::array<const char*, kStageCount> kStageNames{
-    "begin",     "locate_early", "record",  "locate_late", "submit",      "end",      "between_calls", "wait",
-    "streaming", "mirror",       "blocked", "gpu_trace",   "gpu_resolve", "gpu_other"};
+    "begin", "locate_early", "record", "locate_late", "submit",    "end",         "ledger",   "between_calls",
+    "wait",  "streaming",    "mirror", "blocked",     "gpu_trace", "gpu_resolve", "gpu_other"};
 using StageTimes = std::array<std::int64_t, kStageCount>;
 
-std::int64_t length(const Interval& interval) { return std::max<std::int64_t>(0, interval.end - interval.begin); }
+std::int64_t length(const Interval& interval) {
+  return std::max<std::int64_t>(0, interval.end - interval.begin);
+}
 
 // `work` is the frame whose work fills the interval; `next` the one whose wait ends it.
 StageTimes stage_times(const FrameRecord& work, const FrameRecord& next) {
@@ -35,9 +49,10 @@ StageTimes stage_times(const FrameRecord& work, const FrameRecord& next) {
   t[kLocateLate] = length(work.locate_late);
   t[kSubmit] = length(work.submit);
   t[kEnd] = length(work.end);
+  t[kLedger] = length(work.ledger);
   t[kWait] = length(next.wait);
   std::int64_t told = 0;
-  for (std::size_t i = kBegin; i <= kEnd; ++i) told += t[i];
+  for (std::size_t i = kBegin; i <= kLedger; ++i) told += t[i];
   t[kBetweenCalls] = std::max<std::int64_t>(0, next.wait.end - work.wait.end - t[kWait] - told);
   t[kStreaming] = work.streaming_ns;
   t[kMirror] = length(work.mirror);
@@ -71,10 +86,9 @@ std::size_t blame(const StageTimes& excess) {
 
 std::string in_words(std::size_t stage, const StageTimes& times, const StageTimes& medians, const FrameRecord& work,
                      const FrameRecord* before) {
-  std::string text = stage == kStageCount
-                         ? std::string("no stage stands out")
-                         : fmt::format("{} took {} ms, {} ms more than its median", kStageNames[stage],
-                                       in_ms(times[stage]), in_ms(times[stage] - medians[stage]));
+  std::string text = stage == kStageCount ? std::string("no stage stands out")
+                                          : fmt::format("{} took {} ms, {} ms more than its median", kStageNames[stage],
+                                                        in_ms(times[stage]), in_ms(times[stage] - medians[stage]));
   if (stage == kWait) text += ": the runtime held the frame back";
   if (work.pipelines_built > 0) text += fmt::format("; {} pipeline build(s)", work.pipelines_built);
   if (before != nullptr && before->room != work.room) text += fmt::format("; room {} to {}", before->room, work.room);

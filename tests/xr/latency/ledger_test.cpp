@@ -1,5 +1,6 @@
 #include "xr/latency/ledger.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "xr/latency/synthetic_run.h"
@@ -108,9 +109,9 @@ TEST(Ledger, WithinBudgetNeedsBothCpuAndGpu) {
   for (std::size_t i = 0; i < 10; ++i) {
     FrameRecord frame = synthetic_frame(i);
     if (i == 2) frame.gpu.end = frame.gpu.begin + 11 * kMs;
-    if (i == 5) frame.end.end = frame.wait.end + 12 * kMs;          // 11 ms busy
-    if (i == 6) frame.end.end = frame.wait.end + 11 * kMs;          // 10 ms busy: just within
-    if (i == 8) frame.gpu = {};                                     // not measured: not judged
+    if (i == 5) frame.end.end = frame.wait.end + 12 * kMs;  // 11 ms busy
+    if (i == 6) frame.end.end = frame.wait.end + 11 * kMs;  // 10 ms busy: just within
+    if (i == 8) frame.gpu = {};                             // not measured: not judged
     if (i == 9) frame.should_render = false;
     ledger.add(frame);
   }
@@ -134,6 +135,24 @@ TEST(Ledger, WithoutDeadlinesOrCalibrationWhatTheyGiveDoesNotExist) {
   EXPECT_FALSE(uncalibrated.clock_error_ns.has_value());
   EXPECT_EQ(uncalibrated.quantity("deadline_margin").histogram.count(), 0u);
   expect_all(uncalibrated, "gpu_busy", 50, 4.0 * kMs);
+}
+
+TEST(Ledger, CountsWhatTheRuntimeAnsweredAboutPosesAndTakesTheHorizonOfThePoseUsed) {
+  Ledger ledger;
+  for (std::size_t i = 0; i < 10; ++i) {
+    FrameRecord frame = synthetic_frame(i);
+    frame.pose_answer = i < 4   ? PoseAnswer::kMeasured
+                        : i < 7 ? PoseAnswer::kTooLate
+                        : i < 9 ? PoseAnswer::kRefused
+                                : PoseAnswer::kPending;
+    frame.early_pose = true;  // all of them: the late pose was never valid
+    ledger.add(frame);
+  }
+  const Summary summary = ledger.summary();
+  EXPECT_THAT(summary.pose_answers, testing::ElementsAre(0, 1, 4, 3, 2));
+  EXPECT_EQ(summary.early_pose_frames, 10u);
+  // Shown 25 ms after the wait ended, located half a millisecond after it.
+  expect_all(summary, "prediction_horizon", 10, 24.5 * kMs);
 }
 
 TEST(Ledger, KeepsPoseErrorsInTheirOwnUnits) {

@@ -27,6 +27,7 @@ inline FrameRecord synthetic_frame(std::uint64_t i) {
   f.locate_late = take(kMs / 4);
   f.submit = take(5 * kMs / 4);
   f.end = take(kMs);
+  f.ledger = take(kMs / 10);
   f.blocked_ns = kMs;
   f.gpu = {start + 3 * kMs, start + 7 * kMs};
   f.gpu_trace = {start + 3 * kMs, start + 6 * kMs};
@@ -43,8 +44,8 @@ inline FrameRecord synthetic_frame(std::uint64_t i) {
 
 // Moves everything of a frame later.
 inline void delay(FrameRecord& f, std::int64_t by) {
-  for (Interval* interval : {&f.wait, &f.begin, &f.locate_early, &f.record, &f.locate_late, &f.submit, &f.end, &f.gpu,
-                             &f.gpu_trace, &f.gpu_resolve, &f.mirror}) {
+  for (Interval* interval : {&f.wait, &f.begin, &f.locate_early, &f.record, &f.locate_late, &f.submit, &f.end,
+                             &f.ledger, &f.gpu, &f.gpu_trace, &f.gpu_resolve, &f.mirror}) {
     if (interval->begin != 0) interval->begin += by;
     if (interval->end != 0) interval->end += by;
   }

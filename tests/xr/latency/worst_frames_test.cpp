@@ -38,9 +38,12 @@ TEST(WorstFrames, BlameTheCallThatStalled) {
   expect_blamed(worst_with([](auto& f) { f[kStalled].submit.end += kStall; }), "submit");
   expect_blamed(worst_with([](auto& f) { f[kStalled].begin.end += kStall; }), "begin");
   expect_blamed(worst_with([](auto& f) { f[kStalled].end.end += kStall; }), "end");
+  expect_blamed(worst_with([](auto& f) { f[kStalled].ledger.end += kStall; }), "ledger");
 }
 
-TEST(WorstFrames, BlameWorkBetweenTheCalls) { expect_blamed(worst_with([](auto&) {}), "between_calls"); }
+TEST(WorstFrames, BlameWorkBetweenTheCalls) {
+  expect_blamed(worst_with([](auto&) {}), "between_calls");
+}
 
 TEST(WorstFrames, BlameTheRuntimeWhenItHeldTheFrameBack) {
   const auto worst = worst_with([](auto& f) { f[kStalled + 1].wait.begin -= kStall; });

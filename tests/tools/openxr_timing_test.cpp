@@ -1,0 +1,216 @@
+// What the ledger says of poses, and what becomes of a walk whose runtime errs: a layer in front of Monado
+// (tests/openxr_layer) moves the head as it likes, errs on order, and keeps books of its own.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <sstream>
+
+#include "tools/monado_walk.h"
+#include "xr/path.h"
+
+namespace probewalk::test {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+// What the layer saw at an xrEndFrame.
+struct EndedFrame {
+  std::int64_t display_time = 0;
+  int layers = 0;
+  double late_mm = 0.0, late_deg = 0.0;    // of the pose that the layer's views state
+  double early_mm = 0.0, early_deg = 0.0;  // of the frame's first locate
+};
+
+std::vector<EndedFrame> read_layer_log(const fs::path& file) {
+  std::ifstream in(file);
+  std::string line;
+  std::getline(in, line);
+  std::vector<EndedFrame> frames;
+  while (std::getline(in, line)) {
+    std::replace(line.begin(), line.end(), ',', ' ');
+    std::istringstream cells(line);
+    EndedFrame frame;
+    std::uint64_t number = 0;
+    cells >> number >> frame.display_time >> frame.layers >> frame.late_mm >> frame.late_deg >> frame.early_mm >>
+        frame.early_deg;
+    frames.push_back(frame);
+  }
+  return frames;
+}
+
+struct LayerWalk {
+  MonadoWalk walk;
+  std::vector<EndedFrame> ended;  // as many as there are frames, in their order
+};
+
+LayerWalk walk_behind_layer(const std::string& name, const std::string& orders, const std::string& arguments) {
+  const fs::path folder = fresh_folder("openxr-timing-" + name);
+  LayerWalk result;
+  result.walk = walk_in_monado(folder,
+                               "export XR_ENABLE_API_LAYERS=XR_APILAYER_PROBEWALK_known_motion XR_API_LAYER_PATH='" +
+                                   std::string(PROBEWALK_TEST_LAYER_MANIFESTS) +
+                                   "' PROBEWALK_TEST_LAYER=\"log=$PWD/layer.csv;" + orders + "\"",
+                               arguments);
+  EXPECT_EQ(result.walk.run.exit_code, 0) << result.walk.run.err;
+  result.ended = read_layer_log(folder / "layer.csv");
+  const auto& frames = result.walk.frames;
+  EXPECT_GE(result.ended.size(), frames.size());
+  result.ended.resize(frames.size());
+  // The two clocks differ by a constant: the books speak of the same frames.
+  for (std::size_t i = 1; i < frames.size(); ++i) {
+    EXPECT_EQ(frames[i].predicted_display - frames[0].predicted_display,
+              result.ended[i].display_time - result.ended[0].display_time);
+  }
+  return result;
+}
+
+std::size_t count(const std::vector<FrameRecord>& frames, PoseAnswer answer) {
+  return static_cast<std::size_t>(std::ranges::count(frames, answer, &FrameRecord::pose_answer));
+}
+
+double median(std::vector<double> values) {
+  if (values.empty()) return NAN;
+  std::ranges::nth_element(values, values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2));
+  return values[values.size() / 2];
+}
+
+double ms(std::int64_t ns) {
+  return static_cast<double>(ns) * 1e-6;
+}
+
+TEST(OpenXrTiming, PoseErrorFoundIsThePoseErrorThatWasPutIn) {
+  if (!has_monado()) GTEST_SKIP() << "monado-service is not installed";
+  constexpr double kRate_mm = 0.5, kRate_deg = 0.03;  // for each ms ahead
+  std::printf(
+      "  load   found of      worst difference        early pose       late pose   early - late   expected\n"
+      "    ms  frames shown        mm        deg   p50 mm    deg    p50 mm    deg         p50 mm     p50 mm\n");
+  for (const int load_ms : {0, 15}) {
+    const LayerWalk run = walk_behind_layer(
+        "pose-" + std::to_string(load_ms),
+        "error_mm_per_ms=0.5;error_deg_per_ms=0.03;stall=xrWaitSwapchainImage;stall_every=1;stall_ms=" +
+            std::to_string(load_ms),
+        "--frames 60");
+    const auto& frames = run.walk.frames;
+    ASSERT_EQ(frames.size(), 60u);
+    double worst_mm = 0.0, worst_deg = 0.0;
+    std::size_t shown = 0, measured = 0;
+    std::vector<double> early_mm, early_deg, late_mm, late_deg, gained_mm, expected_mm;
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+      const FrameRecord& frame = frames[i];
+      const EndedFrame& ended = run.ended[i];
+      EXPECT_EQ(ended.layers > 0, frame.should_render);
+      if (ended.layers == 0) continue;
+      ++shown;
+      early_mm.push_back(ended.early_mm);
+      early_deg.push_back(ended.early_deg);
+      late_mm.push_back(ended.late_mm);
+      late_deg.push_back(ended.late_deg);
+      // The layer errs by the time ahead, so that the two errors lie as far apart as the two locates. Where the frame's
+      // time has come before its late locate, there is nothing left to err.
+      const double between_ms = ms(frame.locate_late.begin - frame.locate_early.begin);
+      const double slack_ms =
+          ms(frame.locate_late.end - frame.locate_late.begin) + ms(frame.locate_early.end - frame.locate_early.begin);
+      if (ended.late_mm > 0.01) {
+        gained_mm.push_back(ended.early_mm - ended.late_mm);
+        expected_mm.push_back(kRate_mm * between_ms);
+        EXPECT_NEAR(gained_mm.back(), expected_mm.back(), kRate_mm * slack_ms + 0.01) << i;
+        EXPECT_NEAR(ended.early_deg - ended.late_deg, kRate_deg * between_ms, kRate_deg * slack_ms + 0.01) << i;
+        EXPECT_NEAR(ended.late_mm, kRate_mm * ms(frame.predicted_display - frame.locate_late.end),
+                    kRate_mm * slack_ms + 0.01);
+      }
+      EXPECT_LT(ended.late_mm, ended.early_mm);
+      if (frame.pose_answer != PoseAnswer::kMeasured) continue;
+      ++measured;
+      worst_mm = std::max(worst_mm, std::abs(frame.pose_error_mm - ended.late_mm));
+      worst_deg = std::max(worst_deg, std::abs(frame.pose_error_deg - ended.late_deg));
+    }
+    std::printf("%6d  %6zu %5zu  %8.4f   %8.5f %8.2f %6.2f  %8.2f %6.2f       %8.2f   %8.2f\n", load_ms, measured,
+                shown, worst_mm, worst_deg, median(early_mm), median(early_deg), median(late_mm), median(late_deg),
+                median(gained_mm), median(expected_mm));
+    EXPECT_GT(shown, 40u);
+    EXPECT_GT(2 * measured, shown);
+    EXPECT_LT(worst_mm, 0.02);
+    EXPECT_LT(worst_deg, 0.002);
+    EXPECT_GT(median(gained_mm), kRate_mm * load_ms);
+  }
+}
+
+TEST(OpenXrTiming, ABareSimulatedHeadsetErrsByNothing) {
+  if (!has_monado()) GTEST_SKIP() << "monado-service is not installed";
+  const MonadoWalk walk = walk_in_monado(fresh_folder("openxr-timing-bare"), "", "--frames 40");
+  ASSERT_EQ(walk.run.exit_code, 0) << walk.run.err;
+  EXPECT_GT(count(walk.frames, PoseAnswer::kMeasured), 10u);
+  for (const FrameRecord& frame : walk.frames) {
+    if (frame.pose_answer != PoseAnswer::kMeasured) continue;
+    EXPECT_EQ(frame.pose_error_mm, 0.0);
+    EXPECT_LT(frame.pose_error_deg, 1e-5);
+  }
+}
+
+TEST(OpenXrTiming, EveryShownFrameIsAccountedForWhereAnswersFail) {
+  if (!has_monado()) GTEST_SKIP() << "monado-service is not installed";
+  const LayerWalk run = walk_behind_layer(
+      "answers", "answer_invalid_every=4;stall=xrWaitFrame;stall_ms=160;stall_every=5", "--frames 40");
+  const auto& frames = run.walk.frames;
+  const auto shown = static_cast<std::size_t>(std::ranges::count_if(run.ended, [](auto& f) { return f.layers > 0; }));
+  EXPECT_GT(count(frames, PoseAnswer::kMeasured), 5u);
+  EXPECT_GT(count(frames, PoseAnswer::kTooLate), 2u);
+  EXPECT_GT(count(frames, PoseAnswer::kRefused), 2u);
+  EXPECT_EQ(frames.size() - count(frames, PoseAnswer::kNone), shown);
+  for (const FrameRecord& frame : frames) {
+    EXPECT_EQ(frame.pose_answer == PoseAnswer::kMeasured, frame.pose_error_mm >= 0.0);
+  }
+  const auto& answers = run.walk.summary["pose_answers"];
+  EXPECT_GT(answers["too_late"].get<int>(), 0);
+  EXPECT_GT(answers["refused"].get<int>(), 0);
+}
+
+TEST(OpenXrTiming, AFrameWithoutALatePoseIsShownWithTheEarlyOneAndSaysSo) {
+  if (!has_monado()) GTEST_SKIP() << "monado-service is not installed";
+  const LayerWalk run = walk_behind_layer("late-invalid", "error_mm_per_ms=0.5;late_invalid_every=7", "--frames 35");
+  ASSERT_EQ(run.walk.frames.size(), 35u);
+  std::size_t early = 0;
+  for (std::size_t i = 0; i < 35; ++i) {
+    const FrameRecord& frame = run.walk.frames[i];
+    if (!frame.should_render) continue;
+    EXPECT_EQ(frame.early_pose, (i + 1) % 7 == 0) << i;
+    EXPECT_EQ(run.ended[i].layers, 1) << i;
+    if (frame.early_pose) {
+      EXPECT_EQ(run.ended[i].late_mm, run.ended[i].early_mm) << i;
+    }
+    early += frame.early_pose ? 1 : 0;
+  }
+  EXPECT_GE(early, 4u);
+  EXPECT_GE(run.walk.summary["early_pose_frames"].get<std::size_t>(), early - 1);
+}
+
+TEST(OpenXrTiming, ATimeThatTheRuntimeDisownsCostsThatFrameAlone) {
+  if (!has_monado()) GTEST_SKIP() << "monado-service is not installed";
+  const LayerWalk run = walk_behind_layer("time-invalid", "time_invalid_every=6", "--frames 36");
+  ASSERT_EQ(run.walk.frames.size(), 36u);
+  for (std::size_t i = 6; i < 36; ++i) {
+    EXPECT_EQ(run.walk.frames[i].should_render, (i + 1) % 6 != 0) << i;
+    EXPECT_EQ(run.ended[i].layers, (i + 1) % 6 != 0 ? 1 : 0) << i;
+  }
+  EXPECT_THAT(run.walk.run.err, HasSubstr("no pose for a time of its own"));
+}
+
+// The layer moves the origin of our space by a metre, then announces that another space will move in an hour.
+TEST(OpenXrTiming, TheViewStaysWhereItIsWhenItsOwnSpaceJumps) {
+  if (!has_monado()) GTEST_SKIP() << "monado-service is not installed";
+  const LayerWalk run = walk_behind_layer("jump", "jump_at_frame=15", "--frames 40 --record walked.jsonl");
+  EXPECT_THAT(run.walk.run.err, HasSubstr("space LOCAL_FLOOR"));
+  const Path path = read_path(fs::path(PROBEWALK_TEST_OUTPUT_DIR) / "tools" / "openxr-timing-jump" / "walked.jsonl");
+  ASSERT_GT(path.poses.size(), 30u);
+  for (std::size_t i = 1; i < path.poses.size(); ++i) {
+    const double dt_s = path.poses[i].t_s - path.poses[i - 1].t_s;
+    EXPECT_LT(glm::distance(path.poses[i].position_m, path.poses[i - 1].position_m), 0.01 + 0.6 * dt_s) << i;
+  }
+}
+
+}  // namespace
+}  // namespace probewalk::test
