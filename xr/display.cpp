@@ -24,6 +24,12 @@ VkExtent2D eye_size_or_default(const DisplayOptions& options) {
   return options.eye_size.width > 0 ? options.eye_size : kDefaultEyeSize;
 }
 
+LocomotionOptions locomotion_of(const DisplayOptions& options, bool in_headset) {
+  LocomotionOptions locomotion = options.locomotion;
+  locomotion.vignette = options.vignette.value_or(in_headset);
+  return locomotion;
+}
+
 // The runtime's hooks, with what a mirror needs besides.
 DeviceHooks with_window(DeviceHooks hooks, const DeviceHooks& window) {
   const auto append = [](std::vector<std::string>& to, const std::vector<std::string>& more) {
@@ -37,12 +43,12 @@ DeviceHooks with_window(DeviceHooks hooks, const DeviceHooks& window) {
 
 // Device, source and mirror for a runtime; without a window also where a desktop or a device cannot mirror.
 void open_mirrored(Display& display, const DisplayOptions& options, const FloorMap& floor, const Pose& start) {
-  const HeadsetOptions headset{options.eye_size, options.seated};
+  const HeadsetOptions headset{options.eye_size, options.seated, locomotion_of(options, true)};
   const ShownEyes shown = options.window_eyes.value_or(ShownEyes::kLeft);
   if (shown != ShownEyes::kNone) {
     try {
       const VkExtent2D size =
-          window_size({options.eye_size.width > 0 ? options.eye_size : kMirrorSize, shown, options.eyes});
+          window_size({options.eye_size.width > 0 ? options.eye_size : kMirrorSize, shown, options.eyes, {}});
       display.window = std::make_unique<Window>("Probewalk: mirror", size);
       display.device = std::make_unique<Device>(
           with_window(display.runtime->device_hooks(), display.window->device_hooks()), options.device);
@@ -65,7 +71,7 @@ void open_mirrored(Display& display, const DisplayOptions& options, const FloorM
 Display open_window(const DisplayOptions& options, const FloorMap& floor, const Pose& start) {
   ShownEyes shown = options.window_eyes.value_or(ShownEyes::kBoth);
   if (shown == ShownEyes::kNone) shown = ShownEyes::kBoth;  // without a mirror, not without a picture
-  const WindowOptions window{eye_size_or_default(options), shown, options.eyes};
+  const WindowOptions window{eye_size_or_default(options), shown, options.eyes, locomotion_of(options, false)};
   Display display;
   display.window = std::make_unique<Window>("Probewalk", window_size(window));
   display.device = std::make_unique<Device>(display.window->device_hooks(), options.device);
@@ -78,6 +84,7 @@ Display open_offscreen(const DisplayOptions& options, const Pose& start, bool in
   offscreen.in_real_time = in_real_time;
   offscreen.eye_size = eye_size_or_default(options);
   offscreen.eyes = options.eyes;
+  offscreen.eyes.ipd_m *= options.locomotion.world_scale;
   Display display;
   display.device = std::make_unique<Device>(DeviceHooks{}, options.device);
   display.source = std::make_unique<OffscreenSource>(*display.device, start, offscreen);

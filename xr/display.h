@@ -10,6 +10,7 @@
 #include "render/device.h"
 #include "xr/eyes.h"
 #include "xr/frame_source.h"
+#include "xr/locomotion.h"
 #include "xr/window_layout.h"
 
 namespace probewalk {
@@ -27,7 +28,9 @@ struct DisplayOptions {
   std::optional<ShownEyes> window_eyes;
   bool seated = false;
   bool offscreen_in_real_time = false;  // at the pace of a display, not on a fixed clock
-  EyeGeometry eyes;  // window and offscreen; a headset has its own
+  LocomotionOptions locomotion;
+  std::optional<bool> vignette;  // empty = in a headset, not in a window
+  EyeGeometry eyes;  // window and offscreen, in the viewer's metres; a headset has its own
   DeviceOptions device;
 };
 

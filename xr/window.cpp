@@ -26,7 +26,9 @@ Window::Library::Library() {
   if (glfwInit() != GLFW_TRUE) throw NoDevice(fmt::format("no window: no display answers ({})", glfw_reason()));
 }
 
-Window::Library::~Library() { glfwTerminate(); }
+Window::Library::~Library() {
+  glfwTerminate();
+}
 
 Window::Window(const std::string& title, VkExtent2D size) {
   if (glfwVulkanSupported() != GLFW_TRUE)
@@ -71,6 +73,11 @@ WindowInput Window::poll() {
   input.wish = {static_cast<double>(down(GLFW_KEY_D)) - static_cast<double>(down(GLFW_KEY_A)),
                 static_cast<double>(down(GLFW_KEY_W)) - static_cast<double>(down(GLFW_KEY_S))};
   input.run = down(GLFW_KEY_LEFT_SHIFT) || down(GLFW_KEY_RIGHT_SHIFT);
+  input.turn = static_cast<double>(down(GLFW_KEY_E) || down(GLFW_KEY_RIGHT)) -
+               static_cast<double>(down(GLFW_KEY_Q) || down(GLFW_KEY_LEFT));
+  const bool recentre = down(GLFW_KEY_R);
+  input.recentre = recentre && !recentre_was_down_;
+  recentre_was_down_ = recentre;
   const bool screenshot = down(GLFW_KEY_F12);
   input.screenshot = screenshot && !screenshot_was_down_;
   screenshot_was_down_ = screenshot;
@@ -84,10 +91,12 @@ WindowInput Window::poll() {
     dragged_px_ += glm::length(input.drag_px);
   } else if (button) {
     dragged_px_ = 0.0;
-  } else if (button_was_down_ && dragged_px_ < kClickSlack_px) {
-    glm::ivec2 size;
-    glfwGetWindowSize(window_, &size.x, &size.y);
-    if (size.x > 0 && size.y > 0) input.click = cursor_px / glm::dvec2(size);
+  }
+  glm::ivec2 size;
+  glfwGetWindowSize(window_, &size.x, &size.y);
+  if ((button || button_was_down_) && dragged_px_ < kClickSlack_px && size.x > 0 && size.y > 0) {
+    input.press = cursor_px / glm::dvec2(size);
+    input.click = !button;
   }
   button_was_down_ = button;
   cursor_px_ = cursor_px;

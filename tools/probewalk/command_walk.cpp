@@ -13,6 +13,7 @@
 #include "tools/probewalk/commands.h"
 #include "tools/probewalk/foveation_option.h"
 #include "tools/probewalk/method_options.h"
+#include "tools/probewalk/walking_options.h"
 #include "xr/latency/run_files.h"
 #include "xr/latency/summary_json.h"
 #include "xr/ledger_cost.h"
@@ -27,6 +28,7 @@ constexpr std::uint32_t kMaxEyeSide_px = 8192;
 struct WalkArguments {
   WalkOptions walk;
   MethodOptions method;
+  std::shared_ptr<WalkingOptions> walking = std::make_shared<WalkingOptions>();
   std::string eye_size;
   std::string path, record, report, pictures, cache;
   std::uint64_t frames = 0;
@@ -121,6 +123,7 @@ void run_walk(WalkArguments arguments, const CommonOptions& common) {
         fmt::format("--scene is read for methods that need maps; method {} needs none", arguments.method.method));
   }
   const std::unique_ptr<Progress> progress = make_progress(common);
+  apply_walking_options(*arguments.walking, walk_options.display, *progress);
   std::unique_ptr<BaselineMaps> maps;
   if (walk_options.choice.needs_maps()) {
     const Pack pack = open_pack(walk_options.pack.string(), [&] { return progress->cancelled(); });
@@ -146,12 +149,13 @@ void run_walk(WalkArguments arguments, const CommonOptions& common) {
 void add_walk_command(CLI::App& app, CommonOptions& common) {
   CLI::App* command = app.add_subcommand("walk", "Walk through a pack in a headset, a window or offscreen");
   command->footer(
-      "Headset: walk as you are; select (trigger) aims and, released, teleports, menu goes back to the rig's middle.\n"
+      "Headset: walk as you are. Hold select (trigger, pinch) to aim, let go to teleport where the throw lands.\n"
+      "Left stick: 1.4 m/s where you look; right stick turns; menu goes back to where you stood last, on free floor.\n"
       "A window beside it shows what the wearer sees. When the runtime goes away, the walk goes on in a window or "
       "offscreen,\n"
       "and in the headset once it is there again.\n"
-      "Window: drag to look, WASD to walk, shift to run, click on the floor to go there, F12 for a picture, Esc to "
-      "leave.\n"
+      "Window: drag to look, WASD to walk, shift to run, Q and E or the arrows to turn, R back to free floor, click on\n"
+      "the floor to go there, F12 for a picture, Esc to leave.\n"
       "Offscreen: plays the pack's tour once over its frames, on a fixed clock; with --realtime (and no --frames) the\n"
       "tour at a walker's pace on the real clock, until it or --seconds are over.\n\n"
       "  probewalk walk house.probes                                      the first display that answers\n"
@@ -159,7 +163,9 @@ void add_walk_command(CLI::App& app, CommonOptions& common) {
       "  probewalk walk house.probes --display headset --record walk.jsonl\n"
       "  probewalk walk https://example.org/house.probes                  from a web server that has the folder\n"
       "  probewalk walk house.probes --display offscreen --path walk.jsonl --save-frames pictures/\n"
-      "A replayed path decides what every display shows; in a headset it plays like a film.");
+      "  probewalk walk house.probes --turn 45 --seated --remember        from now on so, unless told otherwise\n"
+      "A replayed path decides what every display shows; in a headset it plays like a film.\n\n" +
+      controls_help());
   auto arguments = std::make_shared<WalkArguments>();
   WalkOptions& walk_options = arguments->walk;
   command
@@ -214,8 +220,7 @@ void add_walk_command(CLI::App& app, CommonOptions& common) {
                                           "Wait for the rooms that each pose wants (default: offscreen only)");
   command->add_flag("--realtime", arguments->realtime, "Never wait for rooms: show what is there, when a display would")
       ->excludes(settle);
-  command->add_flag("--seated", walk_options.display.seated,
-                    "Headset: the head's resting place is at standing eye height");
+  add_walking_options(*command, arguments->walking);
   arguments->ev_option = command->add_option("--ev", arguments->ev, "Exposure value, instead of the pack's")
                              ->check(CLI::Range(-32.0, 32.0));
   command->add_option("--save-frames", arguments->pictures, "Write the eyes' pictures here as PNG");
