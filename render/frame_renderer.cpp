@@ -63,8 +63,9 @@ struct FrameSlot {
   std::uint64_t hidden_version = 0;
   PassTimer timer;
   std::vector<VkImageView> layer_views, depth_views;  // of the target
-  std::uint64_t frame = 0;                            // submitted last from this slot
-  std::uint64_t last_work = 0;                        // timeline value of the slot's last submit
+  std::uint64_t frame = 0;      // submitted last from this slot
+  std::uint64_t last_work = 0;  // timeline value of the slot's last submit
+  bool is_timed = true;         // the frame recorded last
   bool has_untaken_times = false;
 };
 
@@ -236,7 +237,7 @@ struct FrameRenderer::Impl {
   std::uint64_t bytes_copied = 0;
   std::chrono::nanoseconds blocked{0};  // of the last record
   FrameTarget target;
-  bool is_recorded = false, is_written = false;
+  bool is_recorded = false, is_written = false, is_timed = true;
   std::deque<FrameGpuTimes> times;
   // With a visibility mask: its meshes, and the tiles that they hide of views like the last.
   std::vector<HiddenMesh> hidden_meshes;
@@ -301,6 +302,8 @@ FrameRenderer::FrameRenderer(const Device& device, ProbeStore& store, const Fram
 
 FrameRenderer::~FrameRenderer() = default;
 
+void FrameRenderer::set_timed(bool timed) { impl_->is_timed = timed; }
+
 void FrameRenderer::record(const FrameTarget& target) {
   Impl& impl = *impl_;
   const TracerOptions& tracer = impl.options.tracer;
@@ -315,7 +318,8 @@ void FrameRenderer::record(const FrameTarget& target) {
   impl.blocked = std::chrono::steady_clock::now() - before;
   impl.collect_times();
   impl.clock.tick();
-  slot.timer.reset();
+  slot.is_timed = impl.is_timed;
+  if (slot.is_timed) slot.timer.reset();
   slot.has_untaken_times = false;
   slot.release_views();
   for (std::uint32_t layer = 0; layer < target.layers; ++layer) {
@@ -337,16 +341,16 @@ void FrameRenderer::record(const FrameTarget& target) {
 
   const VkDeviceAddress constants = slot.constants.address();
   begin_commands(slot.commands[kTrace]);
-  slot.timer.begin(slot.commands[kTrace], kTrace);
+  if (slot.is_timed) slot.timer.begin(slot.commands[kTrace], kTrace);
   passes.tracer.record(slot.commands[kTrace], constants, target.extent);
-  slot.timer.end(slot.commands[kTrace], kTrace);
+  if (slot.is_timed) slot.timer.end(slot.commands[kTrace], kTrace);
   check(vkEndCommandBuffer(slot.commands[kTrace]), "vkEndCommandBuffer");
 
   begin_commands(slot.commands[kResolve]);
-  slot.timer.begin(slot.commands[kResolve], kResolve);
+  if (slot.is_timed) slot.timer.begin(slot.commands[kResolve], kResolve);
   passes.resolve.record(slot.commands[kResolve], constants, target, slot.layer_views);
   if (passes.depth) passes.depth->record(slot.commands[kResolve], constants, target, slot.depth_views);
-  slot.timer.end(slot.commands[kResolve], kResolve);
+  if (slot.is_timed) slot.timer.end(slot.commands[kResolve], kResolve);
   check(vkEndCommandBuffer(slot.commands[kResolve]), "vkEndCommandBuffer");
   impl.target = target;
   impl.is_recorded = true;
@@ -383,7 +387,7 @@ std::uint64_t FrameRenderer::submit() {
   FrameSlot& slot = impl.slot();
   impl.submit({slot.commands.data(), kPasses}, impl.target.wait_before, impl.target.signal_after);
   slot.frame = impl.next_frame;
-  slot.has_untaken_times = true;
+  slot.has_untaken_times = slot.is_timed;
   impl.is_recorded = impl.is_written = false;
   return impl.next_frame++;
 }

@@ -56,6 +56,8 @@ class FrameRenderer {
   FrameRenderer(const FrameRenderer&) = delete;
   FrameRenderer& operator=(const FrameRenderer&) = delete;
 
+  // Whether frames recorded from now on are timed on the device; they are unless told otherwise.
+  void set_timed(bool timed);
   // Waits until the frame before the last has finished, takes in what has streamed, records the passes. The target has
   // the options' formats, as many layers as there are views, and an extent within theirs.
   void record(const FrameTarget& target);
@@ -79,7 +81,7 @@ class FrameRenderer {
   std::int64_t blocked_ns() const;
   // Bytes that the recorded frame copies to the device.
   std::uint64_t bytes_copied() const;
-  // Times of the oldest finished frame that has not been taken yet, if any. Does not block. Times not taken before
+  // Times of the oldest finished frame that was timed and has not been taken yet, if any. Does not block. Times not taken before
   // their slot is used again (two frames later) are kept, up to 64 of them.
   std::optional<FrameGpuTimes> take_times();
   // Waits until all frames submitted have finished.

@@ -38,14 +38,14 @@ DeviceHooks with_window(DeviceHooks hooks, const DeviceHooks& window) {
 
 // Device, source and mirror for a runtime; without a window also where a desktop or a device cannot mirror.
 void open_mirrored(Display& display, const DisplayOptions& options, const FloorMap& floor, const Pose& start) {
-  const HeadsetOptions headset{options.eye_size, options.seated};
+  const HeadsetOptions headset{options.eye_size, options.seated, options.locomotion};
   const ShownEyes shown = options.window_eyes.value_or(ShownEyes::kLeft);
   if (shown != ShownEyes::kNone) {
     try {
-      const VkExtent2D size = shown == ShownEyes::kSpectator
-                                  ? kSpectatorSize
-                                  : window_size({options.eye_size.width > 0 ? options.eye_size : kMirrorSize, shown,
-                                                 options.eyes, nullptr});
+      const VkExtent2D size =
+          shown == ShownEyes::kSpectator
+              ? kSpectatorSize
+              : window_size({options.eye_size.width > 0 ? options.eye_size : kMirrorSize, shown, options.eyes, {}, nullptr});
       display.window = std::make_unique<Window>("Probewalk: mirror", size);
       display.device = std::make_unique<Device>(
           with_window(display.runtime->device_hooks(), display.window->device_hooks()), options.device);
@@ -69,7 +69,7 @@ Display open_window(const DisplayOptions& options, const FloorMap& floor, const 
   ShownEyes shown = options.window_eyes.value_or(ShownEyes::kBoth);
   // A headset's mirror, or none: without a headset the window is what there is to see.
   if (shown == ShownEyes::kNone || shown == ShownEyes::kSpectator) shown = ShownEyes::kBoth;
-  const WindowOptions window{eye_size_or_default(options), shown, options.eyes, options.overlay};
+  const WindowOptions window{eye_size_or_default(options), shown, options.eyes, options.locomotion, options.overlay};
   Display display;
   display.window = std::make_unique<Window>("Probewalk", window_size(window));
   display.device = std::make_unique<Device>(display.window->device_hooks(), options.device);
@@ -82,6 +82,7 @@ Display open_offscreen(const DisplayOptions& options, const Pose& start, bool in
   offscreen.in_real_time = in_real_time;
   offscreen.eye_size = eye_size_or_default(options);
   offscreen.eyes = options.eyes;
+  offscreen.eyes.ipd_m *= options.locomotion.world_scale;
   Display display;
   display.device = std::make_unique<Device>(DeviceHooks{}, options.device);
   display.source = std::make_unique<OffscreenSource>(*display.device, start, offscreen);
@@ -120,7 +121,7 @@ Display open_display(const DisplayOptions& options, const FloorMap& floor, const
     case DisplayChoice::kWindow:
       return open_window(options, floor, start);
     case DisplayChoice::kOffscreen:
-      return open_offscreen(options, start);
+      return open_offscreen(options, start, options.offscreen_in_real_time);
     case DisplayChoice::kAuto:
       break;
   }
@@ -140,7 +141,7 @@ Display open_display(const DisplayOptions& options, const FloorMap& floor, const
   } catch (const NoDevice& error) {
     window_silent = error.what();
   }
-  Display display = open_offscreen(options, start);
+  Display display = open_offscreen(options, start, options.offscreen_in_real_time);
   display.reason = fmt::format("{}; {}", headset_silent, window_silent);
   return display;
 }

@@ -10,6 +10,7 @@
 #include "render/device.h"
 #include "xr/eyes.h"
 #include "xr/frame_source.h"
+#include "xr/locomotion.h"
 #include "xr/window_layout.h"
 
 namespace probewalk {
@@ -28,7 +29,9 @@ struct DisplayOptions {
   std::optional<ShownEyes> window_eyes;
   OverlayBoard* overlay = nullptr;  // of the window or the mirror; outlives every display
   bool seated = false;
-  EyeGeometry eyes;  // window and offscreen; a headset has its own
+  bool offscreen_in_real_time = false;  // at the pace of a display, not on a fixed clock
+  LocomotionOptions locomotion;
+  EyeGeometry eyes;  // window and offscreen, in the viewer's metres; a headset has its own
   DeviceOptions device;
 };
 

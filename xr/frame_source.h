@@ -15,6 +15,7 @@
 #include "render/frame_target.h"
 #include "render/hidden_tiles.h"
 #include "xr/latency/frame_record.h"
+#include "xr/walkable.h"
 
 namespace probewalk {
 
@@ -89,6 +90,10 @@ class FrameSource {
 
   // How dark locomotion wants the picture: 0 = as it is, 1 = black (a teleport's blink).
   virtual float fade() const { return 0.0f; }
+  // While the user aims a teleport: its way, in the world.
+  virtual const FloorArc* aim() const { return nullptr; }
+  // How far locomotion narrows the view: 0 = not at all, 1 = as far as it goes.
+  virtual float vignette() const { return 0.0f; }
   // Whether a person's head moves the view, which no wall holds back.
   virtual bool head_is_real() const { return false; }
   // One for each frame whose time has come since the last call; asks the runtime. Always empty where a display has no

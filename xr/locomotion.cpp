@@ -2,190 +2,165 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+#include <utility>
 
 namespace probewalk {
 namespace {
 
-constexpr double kPitchLimit_rad = 85.0 * std::numbers::pi / 180.0;
 constexpr double kHeightSmoothing_s = 0.1;
+constexpr double kDeadZone = 0.15;  // of a stick that nobody touches
+constexpr double kSnapAt = 0.7, kSnapAgainBelow = 0.4;
+constexpr double kVignetteUp_s = 0.15, kVignetteDown_s = 0.3;
+// A long pause does not become a long march.
+constexpr int kMaxSteps = 200;
 
-// The node of the column at (x, z) whose air holds height y, or null.
-const FloorNode* air_at(const FloorMap& floor, glm::dvec3 point_m) {
-  // A head under a ceiling is at most one headroom above its floor; `find` looks up to one step above its argument.
-  const std::int32_t index = floor.find({point_m.x, point_m.y - kStep_m, point_m.z});
-  if (index < 0) return nullptr;
-  const FloorNode& node = floor.nodes[static_cast<std::size_t>(index)];
-  return point_m.y <= static_cast<double>(node.floor_m + node.headroom_m) ? &node : nullptr;
+// What a stick means: nothing in its dead zone, from there on evenly up to 1.
+double out_of_dead_zone(double value) {
+  const double size = std::min(std::abs(value), 1.0);
+  return size <= kDeadZone ? 0.0 : std::copysign((size - kDeadZone) / (1.0 - kDeadZone), value);
+}
+
+glm::dvec2 out_of_dead_zone(glm::dvec2 stick) {
+  const double length = glm::length(stick);
+  return length > kDeadZone ? stick / length * out_of_dead_zone(length) : glm::dvec2(0);
 }
 
 }  // namespace
 
-std::optional<double> floor_height_m(const FloorMap& floor, glm::dvec3 foot_m) {
-  const std::int32_t index = floor.find(foot_m);
-  if (index < 0) return std::nullopt;
-  const double height_m = floor.nodes[static_cast<std::size_t>(index)].floor_m;
-  if (height_m < foot_m.y - kStep_m) return std::nullopt;
-  return height_m;
+Locomotion::Locomotion(const FloorMap& floor, const LocomotionOptions& options)
+    : floor_(floor), options_(options), vignette_(kVignetteUp_s, kVignetteDown_s) {
+  rig_.scale = options.world_scale;
 }
 
-std::optional<glm::dvec3> floor_under_ray(const FloorMap& floor, glm::dvec3 origin_m, glm::dvec3 direction,
-                                          double reach_m) {
-  const double length = glm::length(direction);
-  if (!(length > 0.0) || !std::isfinite(length)) return std::nullopt;
-  const glm::dvec3 step = direction / length * (floor.cell_m * 0.5);
-  const int steps = static_cast<int>(reach_m / (floor.cell_m * 0.5));
-  glm::dvec3 point = origin_m;
-  for (int i = 0; i < steps; ++i) {
-    const glm::dvec3 next = point + step;
-    if (air_at(floor, next) == nullptr) {
-      // Left the air: through the floor of this column, which is the answer, or into something solid.
-      const std::int32_t index = floor.find({next.x, next.y, next.z});
-      if (index < 0) return std::nullopt;
-      const double height_m = floor.nodes[static_cast<std::size_t>(index)].floor_m;
-      if (direction.y >= 0.0 || height_m < next.y || height_m > point.y + kStep_m) return std::nullopt;
-      return glm::dvec3(next.x, height_m, next.z);
-    }
-    point = next;
-  }
-  return std::nullopt;
+void Locomotion::place(const Pose& anchor, const HeadPose& head, const RigFloor& rig_floor) {
+  rig_floor_ = rig_floor;
+  rig_.yaw_rad = anchor.yaw_rad - head.yaw_rad;
+  glm::dvec3 foot_m = anchor.position_m - glm::dvec3(0, kEyeHeight_m, 0);
+  // The highest floor below the eyes: a wearer may be tall, or crouch.
+  const std::int32_t index = floor_.find(anchor.position_m - glm::dvec3(0, kStep_m + 0.1, 0));
+  if (index >= 0) foot_m.y = floor_.nodes[static_cast<std::size_t>(index)].floor_m;
+  stand_over(head, foot_m);
+  placed_ = true;
 }
 
-bool is_clear_way(const FloorMap& floor, glm::dvec3 from_m, glm::dvec3 to_m) {
-  if (floor.nodes.empty()) return true;
-  const int steps = std::max(1, static_cast<int>(std::ceil(glm::length(to_m - from_m) / (floor.cell_m * 0.5))));
-  for (int i = 0; i <= steps; ++i) {
-    if (air_at(floor, from_m + (to_m - from_m) * (static_cast<double>(i) / steps)) == nullptr) return false;
-  }
-  return true;
+void Locomotion::set_height() {
+  rig_.position_m.y = smooth_floor_m_ - rig_floor_.y_m * rig_.scale;
 }
 
-void Blink::start(glm::dvec3 target_m) {
-  if (phase_ != Phase::kNone) return;
-  phase_ = Phase::kDown;
-  elapsed_s_ = 0.0;
-  target_m_ = target_m;
+void Locomotion::stand_over(const HeadPose& head, glm::dvec3 foot_m) {
+  foot_m_ = home_m_ = foot_m;
+  smooth_floor_m_ = foot_m.y;
+  rig_ = rig_.with_head_over({foot_m.x, foot_m.z}, head.position_m);
+  set_height();
 }
 
-std::optional<glm::dvec3> Blink::advance(double dt_s) {
-  if (phase_ == Phase::kNone) return std::nullopt;
-  elapsed_s_ += dt_s;
-  if (phase_ == Phase::kDown && elapsed_s_ >= kDown_s) {
-    phase_ = Phase::kUp;
-    elapsed_s_ = 0.0;
-    return target_m_;
-  }
-  if (phase_ == Phase::kUp && elapsed_s_ >= kUp_s) phase_ = Phase::kNone;
-  return std::nullopt;
-}
-
-float Blink::darkness() const {
-  switch (phase_) {
-    case Phase::kDown:
-      return static_cast<float>(std::min(1.0, elapsed_s_ / kDown_s));
-    case Phase::kUp:
-      return static_cast<float>(std::max(0.0, 1.0 - elapsed_s_ / kUp_s));
-    case Phase::kNone:
-      break;
-  }
-  return 0.0f;
-}
-
-FloorWalker::FloorWalker(const FloorMap& floor, const Pose& start)
-    : floor_(floor),
-      foot_m_(start.position_m - glm::dvec3(0, kEyeHeight_m, 0)),
-      eye_height_m_(kEyeHeight_m),
-      smooth_floor_m_(foot_m_.y),
-      yaw_rad_(start.yaw_rad),
-      pitch_rad_(start.pitch_rad) {
-  if (const auto height_m = floor_height_m(floor_, foot_m_)) {
-    foot_m_.y = *height_m;
-    eye_height_m_ = start.position_m.y - *height_m;
-    smooth_floor_m_ = *height_m;
-  }
-}
-
-void FloorWalker::look(double yaw_rad, double pitch_rad) {
-  yaw_rad_ = std::remainder(yaw_rad_ + yaw_rad, 2.0 * std::numbers::pi);
-  pitch_rad_ = std::clamp(pitch_rad_ + pitch_rad, -kPitchLimit_rad, kPitchLimit_rad);
-}
-
-bool FloorWalker::can_stand(glm::dvec2 at, double foot_m, double radius_m) const {
-  const auto centre = floor_height_m(floor_, {at.x, foot_m, at.y});
-  if (!centre) return false;
-  if (radius_m <= 0.0) return true;
-  for (int i = 0; i < 8; ++i) {
-    const double angle = i * std::numbers::pi / 4;
-    const glm::dvec3 rim(at.x + radius_m * std::cos(angle), *centre, at.y + radius_m * std::sin(angle));
-    if (!floor_height_m(floor_, rim)) return false;
-  }
-  return true;
-}
-
-void FloorWalker::step(glm::dvec2 move) {
-  if (floor_.nodes.empty()) {
-    foot_m_ += glm::dvec3(move.x, 0, move.y);
-    return;
-  }
-  const glm::dvec2 here(foot_m_.x, foot_m_.z);
-  // A body that already overlaps a wall (a teleport into a corner) is only held by its centre, so that it can leave.
-  const double radius_m = can_stand(here, foot_m_.y, kBodyRadius_m) ? kBodyRadius_m : 0.0;
-  // The whole move, else what slides along a wall.
-  for (const glm::dvec2 part : {move, glm::dvec2(move.x, 0), glm::dvec2(0, move.y)}) {
-    if (part == glm::dvec2(0) || !can_stand(here + part, foot_m_.y, radius_m)) continue;
-    foot_m_ = {here.x + part.x, foot_m_.y, here.y + part.y};
-    foot_m_.y = *floor_height_m(floor_, foot_m_);
-    return;
-  }
-}
-
-void FloorWalker::advance(glm::dvec2 wish, double speed_m_s, double dt_s) {
-  if (const auto target_m = blink_.advance(dt_s)) {
-    foot_m_ = *target_m;
-    smooth_floor_m_ = foot_m_.y;
-  }
-  const double length = glm::length(wish);
-  if (length > 1.0) wish /= length;
-  const glm::dvec2 forward(-std::sin(yaw_rad_), -std::cos(yaw_rad_));
-  const glm::dvec2 right(std::cos(yaw_rad_), -std::sin(yaw_rad_));
-  const glm::dvec2 move = (right * wish.x + forward * wish.y) * (speed_m_s * dt_s);
-  // Half a column at a time, so that no wall is stepped over; a long pause does not become a long march.
-  const int steps = std::clamp(static_cast<int>(std::ceil(glm::length(move) / (floor_.cell_m * 0.5))), 0, 200);
-  for (int i = 0; i < steps; ++i) step(move / static_cast<double>(steps));
-  smooth_floor_m_ += (foot_m_.y - smooth_floor_m_) * (1.0 - std::exp(-dt_s / kHeightSmoothing_s));
-}
-
-Pose FloorWalker::head() const {
+Pose Locomotion::anchor(const HeadPose& head) const {
   Pose pose;
-  pose.position_m = {foot_m_.x, smooth_floor_m_ + eye_height_m_, foot_m_.z};
-  pose.yaw_rad = yaw_rad_;
-  pose.pitch_rad = pitch_rad_;
+  const glm::dvec3 head_m = rig_.world_from_rig(head.position_m);
+  pose.position_m = {head_m.x, foot_m_.y + kEyeHeight_m, head_m.z};
+  pose.yaw_rad = rig_.yaw_rad + head.yaw_rad;
   return pose;
 }
 
-glm::dvec3 Rig::world_from_rig(glm::dvec3 point_m) const {
-  return position_m + glm::angleAxis(yaw_rad, glm::dvec3(0, 1, 0)) * point_m;
+void Locomotion::advance(const HeadPose& head, const MoveInput& input, double dt_s) {
+  if (const auto target_m = blink_.advance(dt_s)) {
+    if (std::exchange(recentres_, false) && !rig_floor_.is_known) {
+      rig_floor_.y_m = head.position_m.y - options_.eye_height_m;
+    }
+    stand_over(head, *target_m);
+  }
+  moves_smoothly_ = false;
+  turn(head, input.turn, dt_s);
+  walk(head, input, dt_s);
+  vignette_.advance(options_.vignette && moves_smoothly_, dt_s);
+  take_aim(head, input);
+  if (input.recentre) recentre();
 }
 
-glm::dquat Rig::world_from_rig(const glm::dquat& orientation) const {
-  return glm::normalize(glm::angleAxis(yaw_rad, glm::dvec3(0, 1, 0)) * orientation);
+void Locomotion::turn(const HeadPose& head, double input, double dt_s) {
+  if (options_.turn == TurnStyle::kSmooth) {
+    const double rate = out_of_dead_zone(input);
+    if (rate == 0.0) return;
+    rig_ = rig_.turned_about(head.position_m, -rate * kTurnSpeed_rad_s * dt_s);
+    moves_smoothly_ = true;
+  } else if (options_.turn == TurnStyle::kSnap) {
+    if (std::abs(input) < kSnapAgainBelow) snapped_ = false;
+    if (std::abs(input) < kSnapAt || std::exchange(snapped_, true)) return;
+    rig_ = rig_.turned_about(head.position_m, -std::copysign(options_.snap_rad, input));
+  }
 }
 
-Rig Rig::with_head_at(glm::dvec3 floor_m, double world_yaw_rad, glm::dvec3 head_m, double head_yaw_rad) {
-  Rig rig;
-  rig.yaw_rad = world_yaw_rad - head_yaw_rad;
-  return rig.teleported(floor_m, head_m);
+void Locomotion::walk(const HeadPose& head, const MoveInput& input, double dt_s) {
+  // The head may have moved in its rig: the foot is under it.
+  const glm::dvec3 head_m = rig_.world_from_rig(head.position_m);
+  foot_m_.x = head_m.x;
+  foot_m_.z = head_m.z;
+  const glm::dvec2 wish = out_of_dead_zone(input.wish);
+  if (wish != glm::dvec2(0)) {
+    const double yaw_rad = rig_.yaw_rad + head.yaw_rad;
+    const glm::dvec2 forward(-std::sin(yaw_rad), -std::cos(yaw_rad));
+    const glm::dvec2 right(std::cos(yaw_rad), -std::sin(yaw_rad));
+    const glm::dvec2 move = (right * wish.x + forward * wish.y) * (input.speed_m_s * rig_.scale * dt_s);
+    // Half a column at a time, so that no wall is stepped over.
+    const double step_m = floor_.cell_m * 0.5;
+    const double wanted = std::ceil(glm::length(move) / step_m);
+    const int steps = static_cast<int>(std::min<double>(wanted, kMaxSteps));
+    for (int i = 0; i < steps; ++i) moves_smoothly_ = step(move / wanted) || moves_smoothly_;
+    rig_ = rig_.with_head_over({foot_m_.x, foot_m_.z}, head.position_m);
+  }
+  smooth_floor_m_ += (foot_m_.y - smooth_floor_m_) * (1.0 - std::exp(-dt_s / kHeightSmoothing_s));
+  set_height();
 }
 
-Rig Rig::teleported(glm::dvec3 floor_m, glm::dvec3 head_m) const {
-  Rig rig = *this;
-  rig.position_m = glm::dvec3(0);
-  rig.position_m = floor_m - rig.world_from_rig(glm::dvec3(head_m.x, 0, head_m.z));
-  return rig;
+bool Locomotion::step(glm::dvec2 move) {
+  if (floor_.nodes.empty()) {
+    foot_m_ += glm::dvec3(move.x, 0, move.y);
+    return true;
+  }
+  const glm::dvec3 wanted = foot_m_ + glm::dvec3(move.x, 0, move.y);
+  if (!options_.through_walls && !can_stand(floor_, foot_m_, 0.0) && can_stand(floor_, home_m_, 0.0)) {
+    // A person who has leant into something comes back towards where they stood, and gets no further into it.
+    const auto away_m = [&](glm::dvec3 at) { return glm::distance(glm::dvec2(at.x, at.z), {home_m_.x, home_m_.z}); };
+    if (away_m(wanted) >= away_m(foot_m_)) return false;
+    foot_m_ = wanted;
+    return true;
+  }
+  // A body that already overlaps a wall (a teleport into a corner) is only held by its centre, so that it can leave.
+  const double radius_m = can_stand(floor_, foot_m_) ? kBodyRadius_m : 0.0;
+  // The whole move, else what slides along a wall.
+  for (const glm::dvec2 part : {move, glm::dvec2(move.x, 0), glm::dvec2(0, move.y)}) {
+    const glm::dvec3 there = foot_m_ + glm::dvec3(part.x, 0, part.y);
+    const bool stands = can_stand(floor_, there, radius_m);
+    if (part == glm::dvec2(0) || !(stands || options_.through_walls)) continue;
+    foot_m_ = there;
+    foot_m_.y = floor_height_m(floor_, there).value_or(there.y);
+    if (stands) home_m_ = foot_m_;
+    return true;
+  }
+  return false;
 }
 
-void WallFade::advance(bool head_free, double dt_s) {
-  darkness_ = std::clamp(darkness_ + (head_free ? -dt_s : dt_s) / kFade_s, 0.0, 1.0);
+void Locomotion::take_aim(const HeadPose& head, const MoveInput& input) {
+  aim_.reset();
+  if (!input.aim) return;
+  const AimRay& ray = *input.aim;
+  const double length = glm::length(ray.direction);
+  if (!(length > 0.0) || !std::isfinite(length)) return;
+  const glm::dvec3 hand_m = rig_.world_from_rig(ray.origin_m);
+  const glm::dvec3 velocity = rig_.world_from_rig_direction(ray.direction / length) * (kThrowSpeed_m_s * rig_.scale);
+  aim_ = arc_to_floor(floor_, hand_m, velocity, ray.straight ? 0.0 : kGravity_m_s2 * rig_.scale,
+                      kTeleportReach_m * rig_.scale);
+  // A hand held through a wall aims at nothing.
+  if (!is_clear_way(floor_, rig_.world_from_rig(head.position_m), hand_m)) aim_->landing_m.reset();
+  if (aim_->landing_m) aim_->landing_m = standing_near(floor_, *aim_->landing_m);
+  if (!input.teleport) return;
+  if (aim_->landing_m && blink_.start(*aim_->landing_m)) recentres_ = false;
+  aim_.reset();
+}
+
+// Always obeyed: a person who has got into a wall or over furniture needs it most.
+void Locomotion::recentre() {
+  if (blink_.start(standing_near(floor_, home_m_))) recentres_ = true;
 }
 
 }  // namespace probewalk

@@ -1,99 +1,118 @@
-// How a person moves through the pack: pure maths on the walkable floor, no device, no clock of its own.
-// Window: a FloorWalker is moved by keys and mouse. Headset: the wearer moves inside a Rig, which only teleports.
+// How a person moves through the pack, in a headset and in a window alike: pure maths on the walkable floor, no device,
+// no clock of its own. The person's head moves inside a rig; locomotion moves the rig.
 #pragma once
 
 #include <glm/glm.hpp>
-#include <glm/gtc/quaternion.hpp>
+#include <numbers>
 #include <optional>
 
 #include "content/scene/space.h"
+#include "xr/fades.h"
+#include "xr/rig.h"
+#include "xr/walkable.h"
 
 namespace probewalk {
 
-inline constexpr double kStep_m = 0.45;  // what a foot climbs without a jump
+// The wearer's metres: --world-scale takes them to the scene's.
 inline constexpr double kWalkSpeed_m_s = 1.4;
 inline constexpr double kRunSpeed_m_s = 3.5;
+inline constexpr double kThrowSpeed_m_s = 8.0;  // of a teleport: from the hand it reaches about 7 m
+inline constexpr double kGravity_m_s2 = 9.81;
+inline constexpr double kTeleportReach_m = 14.0;  // along the arc or ray
+inline constexpr double kTurnSpeed_rad_s = std::numbers::pi / 2;
 
-// The floor under a foot: the node of the column whose floor lies within one step, or nothing (wall, furniture, void).
-std::optional<double> floor_height_m(const FloorMap& floor, glm::dvec3 foot_m);
-
-// Where a ray first meets the floor, up to `reach_m` away. It ends at the first column without free air at its height,
-// so that nobody teleports through a wall.
-std::optional<glm::dvec3> floor_under_ray(const FloorMap& floor, glm::dvec3 origin_m, glm::dvec3 direction,
-                                          double reach_m = 12.0);
-
-// Free air over walkable floor all the way between two points. Columns know no air over furniture: a way across it counts
-// as not clear. Where there is no floor at all nothing is in the way.
-bool is_clear_way(const FloorMap& floor, glm::dvec3 from_m, glm::dvec3 to_m);
-
-// A blink: the view darkens, the jump happens in the dark, the view comes back.
-class Blink {
- public:
-  static constexpr double kDown_s = 0.12;
-  static constexpr double kUp_s = 0.20;
-
-  void start(glm::dvec3 target_m);  // ignored while one is on its way
-  // Returns the target once, at the darkest moment.
-  std::optional<glm::dvec3> advance(double dt_s);
-  float darkness() const;  // 0 = picture, 1 = black
-
- private:
-  enum class Phase { kNone, kDown, kUp };
-  Phase phase_ = Phase::kNone;
-  double elapsed_s_ = 0.0;
-  glm::dvec3 target_m_{0.0};
+enum class TurnStyle {
+  kSnap,    // by steps of snap_rad, at once
+  kSmooth,  // at kTurnSpeed_rad_s
+  kOff,     // the wearer's own body alone
 };
 
-// A walker in a window. Walls block (a body of kBodyRadius_m slides along them), steps are climbed, the eye follows the
-// floor smoothly. Where the pack has no floor at all the walker floats.
-class FloorWalker {
- public:
-  // `floor` must outlive the walker. `start` is an eye pose.
-  FloorWalker(const FloorMap& floor, const Pose& start);
-
-  void look(double yaw_rad, double pitch_rad);  // relative; pitch stays within 85 degrees
-  void teleport(glm::dvec3 floor_m) { blink_.start(floor_m); }
-  // `wish.x` to the right, `wish.y` forward, length at most 1 counts.
-  void advance(glm::dvec2 wish, double speed_m_s, double dt_s);
-
-  Pose head() const;
-  float fade() const { return blink_.darkness(); }
-  const FloorMap& floor() const { return floor_; }
-
- private:
-  bool can_stand(glm::dvec2 at, double foot_m, double radius_m) const;
-  void step(glm::dvec2 move);
-
-  const FloorMap& floor_;
-  glm::dvec3 foot_m_;          // y is the floor's
-  double eye_height_m_;
-  double smooth_floor_m_;      // what the eye stands on
-  double yaw_rad_, pitch_rad_;
-  Blink blink_;
+struct LocomotionOptions {
+  TurnStyle turn = TurnStyle::kSnap;
+  double snap_rad = std::numbers::pi / 6;
+  bool vignette = false;       // narrows the view while it moves smoothly
+  bool through_walls = false;  // walls hold nobody; floors still carry
+  double world_scale = 1.0;    // metres of the scene to one of the wearer's; 0.01 to 100
+  // Over the floor, of a resting head, in the wearer's metres. Counts where the rig's floor is not known.
+  double eye_height_m = kEyeHeight_m;
 };
 
-// world_from_rig: where the headset's floor-level space lies in the world. Nothing but teleport and recentre moves it.
-struct Rig {
+// Where a teleport is thrown from, in the rig. The direction has any length but 0.
+struct AimRay {
+  glm::dvec3 origin_m{0.0};
+  glm::dvec3 direction{0.0, 0.0, -1.0};
+  bool straight = false;  // a ray (the mouse), not an arc (a hand)
+};
+
+// What the person wants, once a frame.
+struct MoveInput {
+  glm::dvec2 wish{0.0};               // x to the right, y forward, as the head looks; a length up to 1 counts
+  double speed_m_s = kWalkSpeed_m_s;  // of a wish of length 1
+  double turn = 0.0;                  // -1 left, 1 right
+  std::optional<AimRay> aim;          // while the person aims
+  bool teleport = false;              // let go: go where `aim` lands
+  bool recentre = false;
+};
+
+// A head in its rig.
+struct HeadPose {
   glm::dvec3 position_m{0.0};
   double yaw_rad = 0.0;
-
-  glm::dvec3 world_from_rig(glm::dvec3 point_m) const;
-  glm::dquat world_from_rig(const glm::dquat& orientation) const;
-  // A rig in which a head at `head` (rig space) stands over `floor_m`, looking along `world_yaw_rad`.
-  static Rig with_head_at(glm::dvec3 floor_m, double world_yaw_rad, glm::dvec3 head_m, double head_yaw_rad);
-  // The same rig moved so that the head stands over `floor_m`; its direction stays.
-  Rig teleported(glm::dvec3 floor_m, glm::dvec3 head_m) const;
 };
 
-// Darkens a view whose head left the free air, over a short distance of time rather than at once.
-class WallFade {
+// Where the rig's own floor is. One that is not known is guessed again at every recentring: from a head that rests at
+// the options' eye height.
+struct RigFloor {
+  double y_m = 0.0;  // in the rig
+  bool is_known = true;
+};
+
+// Walls block (a body of kBodyRadius_m slides along them), steps are climbed smoothly, turns go about the head, a
+// teleport lands on walkable floor and on no other. Where the pack has no floor at all the person floats. What a head
+// does inside its rig nobody holds back.
+class Locomotion {
  public:
-  static constexpr double kFade_s = 0.15;
-  void advance(bool head_free, double dt_s);
-  float darkness() const { return static_cast<float>(darkness_); }
+  // `floor` must outlive this.
+  Locomotion(const FloorMap& floor, const LocomotionOptions& options);
+
+  // Places the rig so that the head stands over the floor under `anchor` (an eye pose in the world), looking along its
+  // yaw.
+  void place(const Pose& anchor, const HeadPose& head, const RigFloor& rig_floor);
+  bool is_placed() const { return placed_; }
+
+  void advance(const HeadPose& head, const MoveInput& input, double dt_s);
+
+  const Rig& rig() const { return rig_; }
+  // Where the head is, at the height of an ordinary eye over its floor: an anchor that gives the same rig.
+  Pose anchor(const HeadPose& head) const;
+  float fade() const { return blink_.darkness(); }      // 0 = picture, 1 = black
+  float vignette() const { return vignette_.value(); }  // 0 = all of the view
+  // While the person aims: the way of the throw in the world. Its landing is where a teleport would lead. Else null.
+  const FloorArc* aim() const { return aim_ ? &*aim_ : nullptr; }
 
  private:
-  double darkness_ = 0.0;
+  void turn(const HeadPose& head, double input, double dt_s);
+  void walk(const HeadPose& head, const MoveInput& input, double dt_s);
+  bool step(glm::dvec2 move);
+  void take_aim(const HeadPose& head, const MoveInput& input);
+  void recentre();
+  void stand_over(const HeadPose& head, glm::dvec3 foot_m);
+  void set_height();
+
+  const FloorMap& floor_;
+  LocomotionOptions options_;
+  Rig rig_;
+  bool placed_ = false;
+  glm::dvec3 foot_m_{0.0};       // in the world, under the head; y is the floor's
+  double smooth_floor_m_ = 0.0;  // what the rig's floor lies on
+  RigFloor rig_floor_;
+  glm::dvec3 home_m_{0.0};  // the floor where the person last stood by choice
+  Blink blink_;
+  bool recentres_ = false;  // the blink under way
+  bool snapped_ = false;    // and the stick has not come back since
+  bool moves_smoothly_ = false;
+  Ramp vignette_;
+  std::optional<FloorArc> aim_;
 };
 
 }  // namespace probewalk

@@ -1,41 +1,48 @@
-// What the wearer does with the controllers: aim and release to teleport, menu to recentre.
+// What the wearer does with controllers or bare hands, whichever the runtime has (openxr_bindings.h).
 #pragma once
 
+#include <array>
 #include <glm/glm.hpp>
-#include <glm/gtc/quaternion.hpp>
-#include <optional>
+#include <string>
+#include <vector>
 
+#include "xr/locomotion.h"
+#include "xr/openxr_bindings.h"
 #include "xr/openxr_instance.h"
 
 namespace probewalk {
 
 class OpenXrInput {
  public:
-  struct Ray {
-    glm::dvec3 origin_m{0.0};  // in the space given to poll
-    glm::dvec3 direction{0.0, 0.0, -1.0};
-  };
-  struct Events {
-    std::optional<Ray> teleport;  // select was released: where the hand aimed
-    bool recentre = false;        // menu was pressed
-  };
-
+  // Suggests the bindings of every profile whose extension the instance has. Throws NoDevice when the runtime refuses
+  // even the simple controller's; of the others it loses those that the runtime does not know, with a warning.
   OpenXrInput(const OpenXrInstance& instance, XrSession session);
-  // To be called once a frame while the session is focused. A lost session shows in `result`.
-  Events poll(XrSession session, XrSpace space, XrTime time, XrResult& result);
+
+  // Names of the profiles that the runtime has accepted.
+  const std::vector<std::string>& accepted() const { return accepted_; }
+  // To be called when the runtime says that the controllers have changed: logs what the hands hold now. Not an error
+  // when the runtime is gone.
+  void note_controllers(XrSession session);
+
+  // To be called once a frame while the session is focused. The ray lies in `space`. A lost session shows in `result`.
+  MoveInput poll(XrSession session, XrSpace space, XrTime time, XrResult& result);
 
  private:
   struct Hand {
     XrPath path = XR_NULL_PATH;
     XrOwned<XrSpace, xrDestroySpace> aim;
+    std::string holds;  // the profile logged last
   };
-  void suggest(const OpenXrInstance& instance);
+  XrAction action(HandAction which) const { return actions_[static_cast<std::size_t>(which)]; }
+  void suggest(const InteractionProfile& profile);
+  bool read(XrSession session, HandAction which, const Hand& hand, XrActionStateBoolean& state, XrResult& result) const;
+  bool read_stick(XrSession session, HandAction which, const Hand& hand, glm::dvec2& stick, XrResult& result) const;
 
-  XrOwned<XrActionSet, xrDestroyActionSet> actions_;
-  XrAction aim_ = XR_NULL_HANDLE;     // destroyed with their action set
-  XrAction select_ = XR_NULL_HANDLE;
-  XrAction menu_ = XR_NULL_HANDLE;
-  Hand hands_[2];
+  const OpenXrInstance& instance_;
+  XrOwned<XrActionSet, xrDestroyActionSet> set_;
+  std::array<XrAction, kHandActions> actions_{};  // destroyed with their set
+  std::array<Hand, 2> hands_;                     // left, right
+  std::vector<std::string> accepted_;
 };
 
 }  // namespace probewalk

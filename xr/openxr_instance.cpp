@@ -10,18 +10,10 @@
 #include <cstring>
 
 #include "content/error.h"
+#include "xr/openxr_extensions.h"
 
 namespace probewalk {
 namespace {
-
-constexpr std::array kExtensions{
-    OpenXrExtension{XR_KHR_VULKAN_ENABLE2_EXTENSION_NAME, true, "no Vulkan"},
-    OpenXrExtension{XR_KHR_CONVERT_TIMESPEC_TIME_EXTENSION_NAME, true, "no common clock for the latency ledger"},
-    OpenXrExtension{XR_EXT_LOCAL_FLOOR_EXTENSION_NAME, false, "the floor is that of the stage, or guessed"},
-    OpenXrExtension{XR_KHR_COMPOSITION_LAYER_DEPTH_EXTENSION_NAME, false,
-                    "frames are reprojected for turns of the head alone, not for its steps"},
-    OpenXrExtension{XR_KHR_VISIBILITY_MASK_EXTENSION_NAME, false, "what the lenses hide is traced for nothing"},
-};
 
 constexpr std::int64_t kSecond_ns = 1'000'000'000;
 
@@ -57,16 +49,12 @@ void check_xr(XrResult result, const char* call) {
   if (XR_FAILED(result)) throw NoDevice(fmt::format("OpenXR: {} failed with {}", call, xr_result_name(result)));
 }
 
-std::span<const OpenXrExtension> wanted_openxr_extensions() {
-  return kExtensions;
-}
-
 OpenXrInstance::OpenXrInstance() {
   // Without a runtime the loader writes lines of its own; ours says the same once. Who sets the variable gets them.
   setenv("XR_LOADER_DEBUG", "none", 0);
   const std::vector<std::string> available = available_extensions();
   std::vector<const char*> names;
-  for (const OpenXrExtension& extension : kExtensions) {
+  for (const OpenXrExtension& extension : wanted_openxr_extensions()) {
     if (std::ranges::find(available, extension.name) != available.end()) {
       names.push_back(extension.name);
       enabled_.emplace_back(extension.name);

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -11,14 +10,6 @@
 #include "xr/openxr_api.h"
 
 namespace probewalk {
-
-// What we ask of a runtime, and what is lost without it.
-struct OpenXrExtension {
-  const char* name;
-  bool required;
-  const char* without_it;
-};
-std::span<const OpenXrExtension> wanted_openxr_extensions();
 
 class OpenXrInstance {
  public:

@@ -62,9 +62,13 @@ const char* depth_name(VkFormat format) {
 
 OpenXrSource::OpenXrSource(const OpenXrInstance& instance, const Device& device, const FloorMap& floor,
                            const Pose& start, const HeadsetOptions& options)
-    : instance_(instance), device_(device), floor_(floor), anchor_(start) {
+    : instance_(instance),
+      device_(device),
+      world_scale_(options.locomotion.world_scale),
+      locomotion_(floor, options.locomotion),
+      anchor_(start) {
   create_session();
-  create_space(options.seated);
+  create_space(options.seated, options.locomotion.eye_height_m);
   input_ = std::make_unique<OpenXrInput>(instance, session_.get());
   create_swapchains(options.eye_size);
 }
@@ -82,7 +86,7 @@ void OpenXrSource::create_session() {
   check_xr(xrCreateSession(instance_.handle(), &info, session_.out()), "xrCreateSession");
 }
 
-void OpenXrSource::create_space(bool seated) {
+void OpenXrSource::create_space(bool seated, double eye_height_m) {
   const auto offered = enumerate_xr<XrReferenceSpaceType>(
       "xrEnumerateReferenceSpaces", {}, [&](auto capacity, auto* count, auto* items) {
         return xrEnumerateReferenceSpaces(session_.get(), capacity, count, items);
@@ -99,8 +103,8 @@ void OpenXrSource::create_space(bool seated) {
   } else {
     // Every runtime has LOCAL; its origin is the head's resting place.
     info.referenceSpaceType = XR_REFERENCE_SPACE_TYPE_LOCAL;
-    space_floor_m_ = -kEyeHeight_m;
-    space_name_ = fmt::format("LOCAL, eyes at {} m", kEyeHeight_m);
+    rig_floor_ = {-eye_height_m, false};
+    space_name_ = fmt::format("LOCAL, {}eyes at rest {} m over the floor", seated ? "seated, " : "", eye_height_m);
   }
   space_type_ = info.referenceSpaceType;
   check_xr(xrCreateReferenceSpace(session_.get(), &info, space_.out()), "xrCreateReferenceSpace");
@@ -215,6 +219,9 @@ SourceState OpenXrSource::poll() {
       case XR_TYPE_EVENT_DATA_VISIBILITY_MASK_CHANGED_KHR:
         masks_are_new_ = true;
         break;
+      case XR_TYPE_EVENT_DATA_INTERACTION_PROFILE_CHANGED:
+        input_->note_controllers(session_.get());
+        break;
       default:
         break;
     }
@@ -287,12 +294,8 @@ OpenXrSource::Head OpenXrSource::head_of(const std::vector<XrView>& views) {
   return head;
 }
 
-void OpenXrSource::place_rig(const Head& head) {
-  const glm::dvec3 foot_m = anchor_.position_m - glm::dvec3(0, kEyeHeight_m, 0);
-  const double floor_y_m = floor_height_m(floor_, foot_m).value_or(foot_m.y);
-  rig_ = Rig::with_head_at({foot_m.x, floor_y_m - space_floor_m_, foot_m.z}, anchor_.yaw_rad, head.position_m,
-                           pose_of({}, head.orientation).yaw_rad);
-  rig_placed_ = true;
+HeadPose OpenXrSource::in_rig(const Head& head) {
+  return {head.position_m, pose_of({}, head.orientation).yaw_rad};
 }
 
 std::vector<ViewPose> OpenXrSource::locate(const FrameTiming& timing, ViewPose* head) {
@@ -302,12 +305,16 @@ std::vector<ViewPose> OpenXrSource::locate(const FrameTiming& timing, ViewPose* 
   frame_.views = std::move(located);
   const Head rig_head = head_of(frame_.views);
   head_ = rig_head;
-  if (!rig_placed_) place_rig(rig_head);
+  if (!rig_placed_) {
+    locomotion_.place(anchor_, in_rig(rig_head), rig_floor_);
+    rig_placed_ = true;
+  }
+  const Rig& rig = locomotion_.rig();
   std::vector<ViewPose> views;
   for (const XrView& view : frame_.views) {
     ViewPose& pose = views.emplace_back();
-    pose.position_m = rig_.world_from_rig(vec_of(view.pose.position));
-    pose.orientation = rig_.world_from_rig(quat_of(view.pose.orientation));
+    pose.position_m = rig.world_from_rig(vec_of(view.pose.position));
+    pose.orientation = rig.world_from_rig(quat_of(view.pose.orientation));
     pose.fov_left_rad = view.fov.angleLeft;
     pose.fov_right_rad = view.fov.angleRight;
     pose.fov_up_rad = view.fov.angleUp;
@@ -315,40 +322,29 @@ std::vector<ViewPose> OpenXrSource::locate(const FrameTiming& timing, ViewPose* 
   }
   if (head != nullptr) {
     *head = views.front();
-    head->position_m = rig_.world_from_rig(rig_head.position_m);
-    head->orientation = rig_.world_from_rig(rig_head.orientation);
+    head->position_m = rig.world_from_rig(rig_head.position_m);
+    head->orientation = rig.world_from_rig(rig_head.orientation);
   }
   return views;
 }
 
-// Teleports, recentring and fades: once a frame, before its views are located.
+// What hands and sticks want, recentring and fades: once a frame, before its views are located.
 void OpenXrSource::move(double dt_s, XrTime time) {
   if (!head_ || !rig_placed_) return;
-  const Head head = *head_;
+  const HeadPose head = in_rig(*head_);
   if (space_changes_at_ != 0 && time >= space_changes_at_) {
-    anchor_ = pose_of(rig_.world_from_rig(head.position_m), rig_.world_from_rig(head.orientation));
-    anchor_.position_m.y = rig_.position_m.y + space_floor_m_ + kEyeHeight_m;
+    anchor_ = locomotion_.anchor(head);
     rig_placed_ = false;
     space_changes_at_ = 0;
     return;
   }
+  MoveInput input;
   if (state_.focused()) {
     XrResult result = XR_SUCCESS;
-    const OpenXrInput::Events events = input_->poll(session_.get(), space_.get(), time, result);
+    input = input_->poll(session_.get(), space_.get(), time, result);
     if (result != XR_ERROR_TIME_INVALID && !alive(result, "xrSyncActions")) return;
-    // Always obeyed: a wearer who has got into a wall or over furniture needs it most.
-    if (events.recentre) blink_.start({rig_.position_m.x, rig_.position_m.y + space_floor_m_, rig_.position_m.z});
-    if (events.teleport) {
-      const glm::dvec3 hand_m = rig_.world_from_rig(events.teleport->origin_m);
-      const glm::dvec3 tip = rig_.world_from_rig(events.teleport->direction) - rig_.position_m;
-      const auto target = floor_under_ray(floor_, hand_m, tip);
-      // A hand held through a wall aims at nothing.
-      if (target && is_clear_way(floor_, rig_.world_from_rig(head.position_m), hand_m)) blink_.start(*target);
-    }
   }
-  if (const auto target_m = blink_.advance(dt_s)) {
-    rig_ = rig_.teleported(*target_m - glm::dvec3(0, space_floor_m_, 0), head.position_m);
-  }
+  locomotion_.advance(head, input, dt_s);
 }
 
 bool OpenXrSource::acquire(OpenXrSwapchain& swapchain) {
@@ -403,8 +399,8 @@ void OpenXrSource::end(const FrameTiming& timing, const std::vector<ViewPose>& r
       depth.subImage = depth_->layer(i, drawn_);
       depth.minDepth = 0.0f;
       depth.maxDepth = 1.0f;
-      depth.nearZ = depth_range_.far_m;
-      depth.farZ = depth_range_.near_m;
+      depth.nearZ = depth_range_.far_m / static_cast<float>(world_scale_);
+      depth.farZ = depth_range_.near_m / static_cast<float>(world_scale_);
       view.next = &depth;
     }
     layer_views.push_back(view);

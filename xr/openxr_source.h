@@ -20,10 +20,11 @@ namespace probewalk {
 
 struct HeadsetOptions {
   VkExtent2D eye_size{0, 0};  // 0 = what the runtime recommends
-  bool seated = false;        // the head's resting place is at standing eye height, wherever the floor is
+  bool seated = false;        // the head's resting place is at the locomotion's eye height, wherever the floor is
+  LocomotionOptions locomotion;
 };
 
-// Nothing but the wearer moves the view; teleports blink. When runtime, session or service goes away no call throws:
+// Nothing but the wearer moves the view, by head, hands and sticks (locomotion.h); teleports blink. When runtime, session or service goes away no call throws:
 // poll says kLost.
 class OpenXrSource final : public FrameSource {
  public:
@@ -41,12 +42,14 @@ class OpenXrSource final : public FrameSource {
   std::uint32_t view_count() const override { return view_count_; }
   VkFormat color_format() const override { return format_; }
   VkFormat depth_format() const override { return depth_format_; }
-  void set_depth_range(const DepthRange& range) override { depth_range_ = range; }
+  void set_depth_range(const DepthRange& range) override { depth_range_ = range; }  // in metres of the scene
   FrameTarget acquire(VkExtent2D drawn) override;
   // The layer states the poses of the last locate that had valid ones; of `rendered_views` it takes the fields of view,
   // which differ from the located ones only where a path is replayed.
   void end(const FrameTiming& timing, const std::vector<ViewPose>& rendered_views) override;
-  float fade() const override { return blink_.darkness(); }
+  float fade() const override { return locomotion_.fade(); }
+  const FloorArc* aim() const override { return locomotion_.aim(); }
+  float vignette() const override { return locomotion_.vignette(); }
   bool head_is_real() const override { return true; }
   std::optional<FrameOutcome> outcome() const override { return frame_.outcome; }
   std::vector<PoseError> take_pose_errors() override;
@@ -76,7 +79,7 @@ class OpenXrSource final : public FrameSource {
   };
 
   void create_session();
-  void create_space(bool seated);
+  void create_space(bool seated, double eye_height_m);
   void create_swapchains(VkExtent2D wanted);
   // False when the runtime is gone (the state then says so); throws on any other error.
   bool alive(XrResult result, const char* call);
@@ -87,18 +90,19 @@ class OpenXrSource final : public FrameSource {
   std::vector<XrView> locate_views(XrTime time);
   [[nodiscard]] std::unique_lock<std::mutex> lock_queue();
   static Head head_of(const std::vector<XrView>& views);
-  void place_rig(const Head& head);
+  static HeadPose in_rig(const Head& head);
   void move(double dt_s, XrTime time);
 
   const OpenXrInstance& instance_;
   const Device& device_;
-  const FloorMap& floor_;
+  const double world_scale_;
+  Locomotion locomotion_;
   Pose anchor_;  // where the head is put when the rig is placed: the start, later where it last was
   SessionState state_;
   XrOwned<XrSession, xrDestroySession> session_;
   std::unique_ptr<OpenXrInput> input_;
   XrOwned<XrSpace, xrDestroySpace> space_;
-  double space_floor_m_ = 0.0;  // y of the floor in the session's space
+  RigFloor rig_floor_;  // in the session's space
   XrReferenceSpaceType space_type_ = XR_REFERENCE_SPACE_TYPE_LOCAL;
   std::string space_name_;
   XrEnvironmentBlendMode blend_mode_ = XR_ENVIRONMENT_BLEND_MODE_OPAQUE;
@@ -117,11 +121,8 @@ class OpenXrSource final : public FrameSource {
   XrTime space_changes_at_ = 0;
   bool warned_of_time_ = false;
   bool masks_are_new_ = true;
-  std::deque<ShownPose> shown_;
-
-  Rig rig_;
   bool rig_placed_ = false;
-  Blink blink_;
+  std::deque<ShownPose> shown_;
 };
 
 }  // namespace probewalk

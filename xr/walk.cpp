@@ -26,9 +26,14 @@ namespace {
 constexpr std::uint64_t kTourFrames = 600;   // of an offscreen walk that is not told how many
 constexpr std::uint64_t kWarmupFrames = 30;  // pipelines, caches and rooms come in; at most a tenth of the run
 
+// A walk that does not wait for its rooms meets them as a walker would only on a clock that does not wait either.
+bool offscreen_in_real_time(const WalkOptions& options) {
+  return options.settle && !*options.settle && !options.frames;
+}
+
 // How many frames the walk has, where that is known beforehand.
 std::optional<std::uint64_t> frame_limit(const WalkOptions& options, bool offscreen, const std::optional<Path>& path) {
-  if (options.frames || !offscreen) return options.frames;
+  if (options.frames || !offscreen || offscreen_in_real_time(options)) return options.frames;
   const auto frames_in = [](double seconds) {
     return static_cast<std::uint64_t>(std::floor(seconds * 1e9 / static_cast<double>(kDefaultPeriod_ns) + 1e-6)) + 1;
   };
@@ -39,8 +44,9 @@ std::optional<std::uint64_t> frame_limit(const WalkOptions& options, bool offscr
 WalkView view_of(const Manifest& manifest, bool offscreen, std::optional<Path> path,
                  std::optional<std::uint64_t> frames) {
   if (path) return WalkView::of_path(std::move(*path));
-  if (offscreen) return WalkView::of_tour(path_of_tour(manifest.tour), frames.value_or(kTourFrames));
-  return {};
+  if (!offscreen) return {};
+  return frames ? WalkView::of_tour(path_of_tour(manifest.tour), *frames)
+                : WalkView::of_path(path_of_tour(manifest.tour));
 }
 
 // What the report says of the display that the walk began on.
@@ -63,6 +69,7 @@ RunInfo run_info(const WalkOptions& options, const Display& display) {
   info.pack = options.pack.filename().empty() ? options.pack.parent_path().filename() : options.pack.filename();
   info.build = read_build_info();
   info.started_utc = utc_now();
+  info.instrumentation_cost_fraction = options.ledger_cost_fraction;
   return info;
 }
 
@@ -135,13 +142,15 @@ WalkResult Walk::run() {
 void Walk::begin(std::optional<Path> path) {
   const Manifest& manifest = pack_.manifest();
   const DisplayOpener open = options_.open_display ? options_.open_display : DisplayOpener(open_display);
-  display_ = std::make_unique<Display>(open(display_options_, manifest.floor, manifest.start));
+  DisplayOptions display_options = display_options_;
+  display_options.offscreen_in_real_time = offscreen_in_real_time(options_);
+  display_ = std::make_unique<Display>(open(display_options, manifest.floor, manifest.start));
   note_display();
   const bool offscreen = display_->source->kind() == "offscreen";
   books_.frames = frame_limit(options_, offscreen, path);
   books_.view = view_of(manifest, offscreen, std::move(path), books_.frames);
   books_.ledger = Ledger({.warmup_frames = std::min(kWarmupFrames, books_.frames.value_or(10 * kWarmupFrames) / 10),
-                          .has_deadlines = !offscreen});
+                          .has_deadlines = !offscreen || display_options.offscreen_in_real_time});
   books_.info = run_info(options_, *display_);
   // Before the walk, not after it, is the time to hear that nothing can be written.
   if (options_.report) make_run_folder(*options_.report);

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -39,10 +40,13 @@ struct WalkOptions {
   TracerChoice choice;                   // how rays are answered
   const BaselineMaps* maps = nullptr;    // of a choice that needs some
   std::optional<double> exposure_ev;     // default: the pack's
-  std::string command;                   // the words that repeat the walk, for the report
-  bool overlay = false;                  // shown from the start, where there is a window
-  DisplayOpener open_display;            // how the first display is opened; empty = probewalk::open_display
-  ChunkOpener open_chunks;               // where the pack's chunks come from; empty = probewalk::open_source
+  // Whether the ledger takes part in a frame; empty = in all of them. To measure what it costs.
+  std::function<bool(std::uint64_t frame)> keeps_books;
+  std::optional<double> ledger_cost_fraction;  // as it was measured, for the report
+  std::string command;                         // the words that repeat the walk, for the report
+  bool overlay = false;                        // shown from the start, where there is a window
+  DisplayOpener open_display;                  // how the first display is opened; empty = probewalk::open_display
+  ChunkOpener open_chunks;                     // where the pack's chunks come from; empty = probewalk::open_source
 };
 
 struct WalkResult {

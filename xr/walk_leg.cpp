@@ -100,16 +100,26 @@ bool WalkLeg::is_over(const FrameTiming& timing) {
   if (!books_.first_display_ns) books_.first_display_ns = timing.predicted_display_ns;
   const double seconds = static_cast<double>(timing.predicted_display_ns - *books_.first_display_ns) * 1e-9;
   if (options_.seconds && seconds > *options_.seconds) return true;
-  return !books_.frames && !options_.seconds && books_.view.is_over(timing.predicted_display_ns);
+  const bool in_real_time = !books_.frames && source_.kind() == "offscreen" && !settle_;
+  return !books_.frames && (in_real_time || !options_.seconds) && books_.view.is_over(timing.predicted_display_ns);
+}
+
+template <typename Work>
+Interval WalkLeg::stamped(const Work& work) const {
+  if (keeps_books_) return timed(work);
+  work();
+  return {};
 }
 
 bool WalkLeg::frame() {
+  keeps_books_ = !options_.keeps_books || options_.keeps_books(books_.frame);
+  renderer_.set_timed(keeps_books_);
   FrameRecord record;
   record.frame_id = books_.frame;
   FrameTiming timing;
-  record.wait = timed([&] { timing = source_.wait(); });
+  record.wait = stamped([&] { timing = source_.wait(); });
   if (timing.predicted_display_ns == 0) return true;  // lost while waiting: the next poll says so
-  record.begin = timed([&] { source_.begin(timing); });
+  record.begin = stamped([&] { source_.begin(timing); });
   record.predicted_display = timing.predicted_display_ns;
   record.period = timing.period_ns;
   period_ns_ = timing.period_ns;
@@ -121,7 +131,7 @@ bool WalkLeg::frame() {
   std::vector<ViewPose> views;
   if (!over && timing.should_render) views = draw(timing, record, drawn);
   // A frame that was begun is ended, whatever became of it.
-  record.end = timed([&] { source_.end(timing, views); });
+  record.end = stamped([&] { source_.end(timing, views); });
   if (over) return false;
   // The frame is the runtime's by now: what is drawn for others holds it up no more.
   if (spectator_ && drawn != 0) {
@@ -129,6 +139,13 @@ bool WalkLeg::frame() {
     spectator_->show(*display_.mirror, renderer_, settings_, record);
   }
   if (drawn != 0 && books_.left_ns) note_arrival();
+  if (keeps_books_) book(record, drawn);
+  if (books_.frames) progress_.advance(1);
+  ++books_.frame;
+  return true;
+}
+
+void WalkLeg::book(FrameRecord& record, std::uint64_t drawn) {
   bool shown = drawn != 0;
   if (const auto outcome = source_.outcome()) {
     record.wait = outcome->wait;
@@ -145,17 +162,14 @@ bool WalkLeg::frame() {
   if (books_.overlay.is_shown()) note_for_overlay(record);
   // Between the frames: asked for time stamps, some drivers (lavapipe) wait for the frames in flight, and a runtime's
   // answers take their time too.
-  book_.add_ledger_time(timed([&] { take_late_answers(); }));
-  if (books_.frames) progress_.advance(1);
-  ++books_.frame;
-  return true;
+  book_.add_ledger_time(stamped([&] { take_late_answers(); }));
 }
 
 std::vector<ViewPose> WalkLeg::draw(const FrameTiming& timing, FrameRecord& record, std::uint64_t& drawn) {
   books_.view.begin_frame(books_.frame, timing.predicted_display_ns);
   ViewPose head;
   std::vector<ViewPose> views;
-  record.locate_early = timed([&] { views = books_.view.locate(source_, timing, head); });
+  record.locate_early = stamped([&] { views = books_.view.locate(source_, timing, head); });
   if (views.empty()) return {};
 
   rooms_.update(head, timing.predicted_display_ns, record);
@@ -163,12 +177,12 @@ std::vector<ViewPose> WalkLeg::draw(const FrameTiming& timing, FrameRecord& reco
     wall_fade_.advance(rooms_.is_free(head.position_m), static_cast<double>(timing.period_ns) * 1e-9);
   }
   if (settle_) {
-    const Interval settled = timed([&] { rooms_.settle(); });
+    const Interval settled = stamped([&] { rooms_.settle(); });
     record.streaming_ns += settled.end - settled.begin;
   }
   FrameTarget target;
-  record.record = timed([&] {
-    const Interval acquired = timed([&] { target = source_.acquire(eyes_.extent()); });
+  record.record = stamped([&] {
+    const Interval acquired = stamped([&] { target = source_.acquire(eyes_.extent()); });
     record.blocked_ns += acquired.end - acquired.begin;
     if (target.image == VK_NULL_HANDLE) return;
     books_.shows_lookups = books_.shows_lookups != source_.take_lookups_request();
@@ -186,13 +200,13 @@ std::vector<ViewPose> WalkLeg::draw(const FrameTiming& timing, FrameRecord& reco
     renderer_.record(target);
   }
 
-  record.locate_late = timed([&] {
+  record.locate_late = stamped([&] {
     std::vector<ViewPose> late = books_.view.locate(source_, timing, head);
     record.early_pose = late.empty();
     if (!late.empty()) views = std::move(late);
   });
   write(views, target.extent);
-  record.submit = timed([&] { drawn = renderer_.submit(); });
+  record.submit = stamped([&] { drawn = renderer_.submit(); });
   record.eye_scale = eyes_.scale();
   eyes_.drawn(drawn);
   books_.head = head;
@@ -277,6 +291,12 @@ void WalkLeg::finish() {
   all.need_to_resident_ns.insert(all.need_to_resident_ns.end(), facts.need_to_resident_ns.begin(),
                                  facts.need_to_resident_ns.end());
   all.loads.insert(all.loads.end(), facts.loads.begin(), facts.loads.end());
+  all.troubles.insert(all.troubles.end(), facts.troubles.begin(), facts.troubles.end());
+  if (facts.source && all.source) {
+    *all.source += *facts.source;
+  } else if (facts.source) {
+    all.source = facts.source;
+  }
   books_.validation_messages += display_.device->validation_messages();
 }
 

@@ -51,7 +51,12 @@ class WalkLeg {
   void write(const std::vector<ViewPose>& views, VkExtent2D extent);
   void save_pictures(const FrameTarget& target);
   void note_for_overlay(const FrameRecord& record);
+  // Enters a frame that has ended.
+  void book(FrameRecord& record, std::uint64_t drawn);
   void take_late_answers();
+  // Times `work` where the ledger takes part in the frame under way.
+  template <typename Work>
+  Interval stamped(const Work& work) const;
   void note_arrival();
   bool is_over(const FrameTiming& timing);
 
@@ -73,6 +78,7 @@ class WalkLeg {
   FrameBook book_;
   std::uint32_t pipelines_built_ = 0;  // before the frame under way
   std::int64_t period_ns_ = 0;
+  bool keeps_books_ = true;            // of the frame under way
   bool screenshot_ = false;
 };
 

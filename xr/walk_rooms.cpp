@@ -55,12 +55,9 @@ StreamerOptions streamer_options(const WalkRoomsOptions& options, const Device& 
 // Empty = it arrived.
 std::string end_of(const LoadResult& load) {
   switch (load.end) {
-    case LoadResult::End::kArrived:
-      return {};
-    case LoadResult::End::kRefused:
-      return "takes more than the pack states";
-    case LoadResult::End::kCancelled:
-      return "not needed any more";
+    case LoadResult::End::kArrived: return {};
+    case LoadResult::End::kRefused: return "takes more than the pack states";
+    case LoadResult::End::kCancelled: return kNotNeededAnyMore;
     case LoadResult::End::kUnavailable:
     case LoadResult::End::kBad:
       return load.error;
@@ -144,6 +141,10 @@ void WalkRooms::report_errors() {
     progress_.note(error);
     last_error_ = error;
   }
+  for (const std::string& line : source_->take_notes()) {
+    progress_.note(line);
+    last_error_ = line;
+  }
 }
 
 // Counted by the streamer from the moment of the request, by the store from that of the allocation.
@@ -163,6 +164,11 @@ StreamingFacts WalkRooms::facts() const {
                            load.bytes_disk, load.bytes_device, load.requested_ns, load.started_ns, load.read_ns,
                            load.decoded_ns, load.finished_ns});
   }
+  for (const auto& [key, trouble] : streamer_.troubles()) {
+    facts.troubles.push_back(
+        {pack_.manifest().rooms[key.room].id, key.level, trouble.tries, trouble.overcome, trouble.reason});
+  }
+  facts.source = source_->statistics();
   return facts;
 }
 

@@ -75,10 +75,13 @@ WindowInput Window::poll() {
   input.wish = {static_cast<double>(down(GLFW_KEY_D)) - static_cast<double>(down(GLFW_KEY_A)),
                 static_cast<double>(down(GLFW_KEY_W)) - static_cast<double>(down(GLFW_KEY_S))};
   input.run = down(GLFW_KEY_LEFT_SHIFT) || down(GLFW_KEY_RIGHT_SHIFT);
+  input.turn = static_cast<double>(down(GLFW_KEY_E) || down(GLFW_KEY_RIGHT)) -
+               static_cast<double>(down(GLFW_KEY_Q) || down(GLFW_KEY_LEFT));
   const auto pressed = [&](int key, bool& was_down) {
     const bool is_down = down(key);
     return !std::exchange(was_down, is_down) && is_down;
   };
+  input.recentre = pressed(GLFW_KEY_R, recentre_was_down_);
   input.overlay = pressed(GLFW_KEY_F1, overlay_was_down_);
   input.lookups = pressed(GLFW_KEY_F2, lookups_was_down_);
   input.screenshot = pressed(GLFW_KEY_F12, screenshot_was_down_);
@@ -92,10 +95,12 @@ WindowInput Window::poll() {
     dragged_px_ += glm::length(input.drag_px);
   } else if (button) {
     dragged_px_ = 0.0;
-  } else if (button_was_down_ && dragged_px_ < kClickSlack_px) {
-    glm::ivec2 size;
-    glfwGetWindowSize(window_, &size.x, &size.y);
-    if (size.x > 0 && size.y > 0) input.click = cursor_px / glm::dvec2(size);
+  }
+  glm::ivec2 size;
+  glfwGetWindowSize(window_, &size.x, &size.y);
+  if ((button || button_was_down_) && dragged_px_ < kClickSlack_px && size.x > 0 && size.y > 0) {
+    input.press = cursor_px / glm::dvec2(size);
+    input.click = !button;
   }
   button_was_down_ = button;
   cursor_px_ = cursor_px;

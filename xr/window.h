@@ -13,14 +13,18 @@ namespace probewalk {
 
 // What happened since the last poll.
 struct WindowInput {
-  glm::dvec2 wish{0.0};             // keys held: x to the right, y forward
-  bool run = false;                 // shift is held
-  glm::dvec2 drag_px{0.0};          // the mouse moved by this with its button held, y down
-  std::optional<glm::dvec2> click;  // a click without a drag: place in the window, (0, 0) top left to (1, 1)
-  bool overlay = false;             // F1
-  bool lookups = false;             // F2
-  bool screenshot = false;          // F12
-  bool closed = false;              // Esc, or the window's own button
+  glm::dvec2 wish{0.0};     // keys held: x to the right, y forward
+  bool run = false;         // shift is held
+  double turn = 0.0;        // keys held: -1 left, 1 right
+  bool recentre = false;    // R
+  glm::dvec2 drag_px{0.0};  // the mouse moved by this with its button held, y down
+  // The button is held, and has not been dragged: place in the window, (0, 0) top left to (1, 1).
+  std::optional<glm::dvec2> press;
+  bool click = false;       // it was let go there
+  bool overlay = false;     // F1
+  bool lookups = false;     // F2
+  bool screenshot = false;  // F12
+  bool closed = false;      // Esc, or the window's own button
 };
 
 class Window {
@@ -53,6 +57,7 @@ class Window {
   double dragged_px_ = 0.0;  // since the button went down
   bool button_was_down_ = false;
   bool overlay_was_down_ = false, lookups_was_down_ = false, screenshot_was_down_ = false;
+  bool recentre_was_down_ = false;
 };
 
 }  // namespace probewalk

@@ -25,7 +25,10 @@ WindowSource::WindowSource(Window& window, const Device& device, const FloorMap&
       swapchain_(device, window.create_surface(device.instance()), EyeImages::kCount, WindowSwapchain::Sharing::kAlone,
                  options.overlay),
       pacer_(static_cast<std::int64_t>(std::llround(1e9 / window.refresh_hz()))),
-      walker_(floor, start) {}
+      locomotion_(floor, options.locomotion),
+      head_(options.locomotion.eye_height_m, start.pitch_rad) {
+  locomotion_.place(start, head_.pose(), RigFloor{});
+}
 
 std::string WindowSource::description() const {
   return fmt::format("a window, {}x{} an eye, paced at {:.3g} Hz", options_.eye_size.width, options_.eye_size.height,
@@ -41,24 +44,21 @@ SourceState WindowSource::poll() {
   if (input_.closed) return SourceState::kFinished;
   const double radians_per_px = options_.eyes.vertical_fov_rad / static_cast<double>(options_.eye_size.height);
   // The scene follows the hand, as if it were held.
-  walker_.look(input_.drag_px.x * radians_per_px, input_.drag_px.y * radians_per_px);
-  if (input_.click) teleport_to(*input_.click);
+  head_.look(input_.drag_px.x * radians_per_px, input_.drag_px.y * radians_per_px);
   return SourceState::kRunning;
 }
 
-void WindowSource::teleport_to(glm::dvec2 click) {
+std::optional<AimRay> WindowSource::ray_through(glm::dvec2 place_in_window) const {
   const VkExtent2D window = window_.framebuffer_extent();
-  const auto place = view_under(window_layout(options_.shown, options_.eye_size, window), window, click);
-  if (!place) return;
-  const ViewPose eye = eyes_of(walker_.head(), options_.eyes, options_.eye_size, nullptr)[place->view];
+  const auto place = view_under(window_layout(options_.shown, options_.eye_size, window), window, place_in_window);
+  if (!place) return std::nullopt;
+  const ViewPose eye = eyes_of(head_.in_rig(), options_.eyes, options_.eye_size, nullptr)[place->view];
   const auto between = [](float low_rad, float high_rad, double f) {
     return glm::mix(std::tan(static_cast<double>(low_rad)), std::tan(static_cast<double>(high_rad)), f);
   };
   const glm::dvec3 direction(between(eye.fov_left_rad, eye.fov_right_rad, place->place.x),
                              between(eye.fov_up_rad, eye.fov_down_rad, place->place.y), -1.0);
-  if (const auto floor_m = floor_under_ray(walker_.floor(), eye.position_m, eye.orientation * direction)) {
-    walker_.teleport(*floor_m);
-  }
+  return AimRay{eye.position_m, eye.orientation * direction, true};
 }
 
 FrameTiming WindowSource::wait() {
@@ -72,12 +72,21 @@ FrameTiming WindowSource::wait() {
   const double dt_s =
       last_display_ns_ == 0 ? 0.0 : static_cast<double>(frame.predicted_display_ns - last_display_ns_) * 1e-9;
   last_display_ns_ = frame.predicted_display_ns;
-  walker_.advance(input_.wish, input_.run ? kRunSpeed_m_s : kWalkSpeed_m_s, std::min(dt_s, 0.25));
+  MoveInput move;
+  move.wish = input_.wish;
+  move.speed_m_s = input_.run ? kRunSpeed_m_s : kWalkSpeed_m_s;
+  move.turn = input_.turn;
+  move.recentre = input_.recentre;
+  if (input_.press) move.aim = ray_through(*input_.press);
+  move.teleport = input_.click;
+  locomotion_.advance(head_.pose(), move, std::min(dt_s, 0.25));
   return timing;
 }
 
 std::vector<ViewPose> WindowSource::locate(const FrameTiming&, ViewPose* head) {
-  return eyes_of(walker_.head(), options_.eyes, options_.eye_size, head);
+  EyeGeometry eyes = options_.eyes;
+  eyes.ipd_m *= options_.locomotion.world_scale;
+  return eyes_of(head_.in_world(locomotion_.rig()), eyes, options_.eye_size, head);
 }
 
 FrameTarget WindowSource::acquire(VkExtent2D drawn) {

@@ -1,8 +1,9 @@
-// Frames to a window on the desktop: both eyes side by side, or one. Drag to look, WASD to walk, shift to run, click on
-// the floor to go there, F12 for a picture, Esc to leave.
+// Frames to a window on the desktop: both eyes side by side, or one. Drag to look, WASD to walk, shift to run, Q and E
+// (or the arrows) to turn, click on the floor to go there, R to recentre, F12 for a picture, Esc to leave.
 #pragma once
 
 #include "content/scene/space.h"
+#include "xr/desktop_head.h"
 #include "xr/eye_images.h"
 #include "xr/eyes.h"
 #include "xr/frame_pacer.h"
@@ -17,7 +18,8 @@ namespace probewalk {
 struct WindowOptions {
   VkExtent2D eye_size{640, 720};
   ShownEyes shown = ShownEyes::kBoth;
-  EyeGeometry eyes;
+  EyeGeometry eyes;  // the viewer's: in their own metres
+  LocomotionOptions locomotion;
   OverlayBoard* overlay = nullptr;  // shown and hidden by F1; outlives the source
 };
 
@@ -42,19 +44,23 @@ class WindowSource final : public FrameSource {
   VkFormat color_format() const override { return EyeImages::kFormat; }
   FrameTarget acquire(VkExtent2D drawn) override;
   void end(const FrameTiming& timing, const std::vector<ViewPose>& rendered_views) override;
-  float fade() const override { return walker_.fade(); }
+  float fade() const override { return locomotion_.fade(); }
+  const FloorArc* aim() const override { return locomotion_.aim(); }
+  float vignette() const override { return locomotion_.vignette(); }
   bool take_screenshot_request() override;
   bool take_lookups_request() override;
 
  private:
-  void teleport_to(glm::dvec2 click);
+  // The ray through a place in the window, in the rig.
+  std::optional<AimRay> ray_through(glm::dvec2 place) const;
 
   Window& window_;
   WindowOptions options_;
   EyeImages images_;
   WindowSwapchain swapchain_;
   FramePacer pacer_;
-  FloorWalker walker_;
+  Locomotion locomotion_;
+  DesktopHead head_;
   WindowInput input_;
   FrameTarget target_;
   std::int64_t last_display_ns_ = 0;

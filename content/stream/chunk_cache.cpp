@@ -1,5 +1,7 @@
 #include "content/stream/chunk_cache.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "content/error.h"
@@ -30,8 +32,10 @@ std::optional<std::vector<std::byte>> ChunkCache::find(const std::string& hash, 
   return std::nullopt;
 }
 
-bool ChunkCache::keep(const std::string& hash, std::span<const std::byte> bytes) const {
-  if (bytes.size() > limit_bytes_) return false;
+std::optional<std::string> ChunkCache::keep(const std::string& hash, std::span<const std::byte> bytes) const {
+  if (bytes.size() > limit_bytes_) {
+    return fmt::format("{}: its limit of {} bytes is less than a chunk of {}", folder_.string(), limit_bytes_, bytes.size());
+  }
   const std::lock_guard lock(mutex_);
   try {
     std::error_code error;
@@ -39,9 +43,9 @@ bool ChunkCache::keep(const std::string& hash, std::span<const std::byte> bytes)
     write_file_whole(folder_ / hash, bytes);
     since_swept_bytes_ += bytes.size();
     make_room();
-    return true;
-  } catch (const BadInput&) {
-    return false;
+    return std::nullopt;
+  } catch (const BadInput& error) {
+    return error.what();
   }
 }
 

@@ -20,8 +20,9 @@ class ChunkCache {
   ChunkCache(std::filesystem::path folder, std::uint64_t limit_bytes = kDefaultLimit_bytes);
   // The chunk's bytes, hash checked; nothing when it is not there or damaged (it is removed then). Thread-safe.
   std::optional<std::vector<std::byte>> find(const std::string& hash, std::uint64_t bytes_disk) const;
-  // Keeps it, if the disk lets us: a full or read-only one costs speed, never the walk. False then. Thread-safe.
-  bool keep(const std::string& hash, std::span<const std::byte> bytes) const;
+  // Keeps it, if the disk lets us: a full or read-only one costs speed, never the walk. Else says why not, naming the folder.
+  // Thread-safe.
+  std::optional<std::string> keep(const std::string& hash, std::span<const std::byte> bytes) const;
 
  private:
   void make_room() const;

@@ -1,8 +1,11 @@
 // A pack's folder on a web server: URL/pack.json, URL/chunks/HASH. Chunks are kept in a cache.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <filesystem>
+#include <mutex>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -18,11 +21,20 @@ class HttpSource final : public ChunkSource {
              const FetchLimits& limits = {});
   std::vector<std::byte> read(const LevelEntry& level, const std::atomic<bool>& cancelled) const override;
   unsigned parallel_reads() const override { return 8; }
+  std::optional<SourceStatistics> statistics() const override;
+  // That the cache takes nothing: once.
+  std::vector<std::string> take_notes() override;
 
  private:
+  void keep(const LevelEntry& level, std::span<const std::byte> bytes) const;
+
   std::string url_;
   ChunkCache cache_;
   HttpFetcher fetcher_;
+  mutable std::atomic<std::uint64_t> chunks_{0}, from_cache_{0}, damaged_{0};
+  mutable std::atomic<bool> has_said_uncached_{false};
+  mutable std::mutex notes_mutex_;
+  mutable std::vector<std::string> notes_;
 };
 
 }  // namespace probewalk

@@ -17,6 +17,7 @@ std::int64_t now_ns() {
 // From one try to the next, doubled each time.
 constexpr std::int64_t kSourceRetry_ns = 250'000'000, kSourceRetryMost_ns = 8'000'000'000;
 constexpr std::int64_t kDamageRetry_ns = 5'000'000'000, kDamageRetryMost_ns = 60'000'000'000;
+constexpr std::int64_t kTellAgain_ns = 30'000'000'000;
 constexpr std::uint32_t kSettleTries = 5;  // what waits for everything waits for so many tries of a source
 
 }  // namespace
@@ -117,12 +118,21 @@ void RoomStreamer::arrive(LoadResult& result) {
     room_seen_[key.room] = true;
     ++statistics_.rooms_loaded;
   }
-  if (troubled_.erase(key) > 0) {
-    errors_.push_back(fmt::format("room {}, level {}: loaded after all", manifest_.rooms[key.room].id, key.level));
-  }
+  overcome(key);
   if (const auto since = wanted_since_ns_.find(key); since != wanted_since_ns_.end()) {
     statistics_.need_to_resident_ns.push_back(result.finished_ns - since->second);
     wanted_since_ns_.erase(since);
+  }
+}
+
+void RoomStreamer::overcome(LevelKey key) {
+  const auto trouble = troubled_.find(key);
+  if (trouble == troubled_.end()) return;
+  const bool is_news = trouble->second.is_damage || std::exchange(failure_told_ns_, 0) > 0;
+  troubled_.erase(trouble);
+  troubles_[key].overcome = true;
+  if (is_news) {
+    errors_.push_back(fmt::format("room {}, level {}: loaded after all", manifest_.rooms[key.room].id, key.level));
   }
 }
 
@@ -133,11 +143,19 @@ void RoomStreamer::stumble(const LoadResult& result) {
   trouble.is_damage = result.end == LoadResult::End::kBad;
   const std::int64_t first_ns = trouble.is_damage ? kDamageRetry_ns : kSourceRetry_ns;
   const std::int64_t last_ns = trouble.is_damage ? kDamageRetryMost_ns : kSourceRetryMost_ns;
-  trouble.retry_ns = now_ns() + std::min(last_ns, first_ns << std::min(trouble.tries, 16u));
+  const std::int64_t now = now_ns();
+  trouble.retry_ns = now + std::min(last_ns, first_ns << std::min(trouble.tries, 16u));
   ++trouble.tries;
   book_.set(result.key, LevelStatus::kFailed);
   ++statistics_.levels_failed;
-  if (is_new) errors_.push_back(result.error);
+  TroubleRecord& record = troubles_[result.key];
+  ++record.tries;
+  record.overcome = false;
+  record.reason = result.error;
+  // Where the source fails, or the device has no space, one line now and then says so, however many levels wait.
+  if (!is_new || (!trouble.is_damage && failure_told_ns_ > 0 && now - failure_told_ns_ < kTellAgain_ns)) return;
+  if (!trouble.is_damage) failure_told_ns_ = now;
+  errors_.push_back(result.error);
 }
 
 void RoomStreamer::retry(std::int64_t now_ns) {

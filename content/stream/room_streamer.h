@@ -23,6 +23,13 @@ struct StreamerOptions {
   bool keep_loads = false;           // for a report: remember every load
 };
 
+// A level that could not be loaded when it was wanted.
+struct TroubleRecord {
+  std::uint64_t tries = 0;  // that failed
+  bool overcome = false;    // it came after all
+  std::string reason;       // of the last failure
+};
+
 struct StreamerStatistics {
   std::uint64_t bytes_read = 0;
   std::uint64_t levels_loaded = 0;
@@ -57,10 +64,12 @@ class RoomStreamer {
   const LevelBook& book() const { return book_; }
   // Levels that could not be loaded and are tried again later; 0 = no trouble.
   std::size_t troubled() const { return troubled_.size(); }
+  // Every level that ever could not be loaded.
+  const std::map<LevelKey, TroubleRecord>& troubles() const { return troubles_; }
   // Every load that has finished, in that order; empty unless options.keep_loads.
   const std::vector<LoadResult>& loads() const { return loads_; }
-  // One line for each chunk that could not be loaded for the first time, or came after all, or takes more than the pack
-  // states, since the last call.
+  // One line for each chunk that is damaged, or takes more than the pack states, one when the source stops delivering, and
+  // one when what was missing has come, since the last call.
   std::vector<std::string> take_errors() { return std::exchange(errors_, {}); }
 
   // Updates until settled, waiting for the loader in between; for stills and for walks that may take their time.
@@ -72,6 +81,7 @@ class RoomStreamer {
   void retire();
   void arrive(LoadResult& result);
   void stumble(const LoadResult& result);
+  void overcome(LevelKey key);
   void retry(std::int64_t now_ns);
   void note_wants(std::int64_t now_ns);
   void count_coarse();
@@ -95,6 +105,8 @@ class RoomStreamer {
   LevelBook book_;
   Residency residency_;
   std::map<LevelKey, Trouble> troubled_;
+  std::map<LevelKey, TroubleRecord> troubles_;
+  std::int64_t failure_told_ns_ = 0;  // that the source does not deliver; 0 = it does
   std::uint64_t coarse_run_ = 0;
   ResidencyDecision decision_;
   std::map<LevelKey, std::int64_t> wanted_since_ns_;  // of what is wanted and not resident

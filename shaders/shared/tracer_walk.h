@@ -56,7 +56,7 @@ PW_FUNCTION bool walk_segment(ProbeRecord probe, OctantSegment s, real t_start, 
     // On to the next cell or planar entry that the ray comes down to. Rays that are walked side by side go through this
     // loop first and what they have found then together: it is many times as long.
     bool planar = false;
-    int record = -1;
+    int record = -1;  // of the cell's cuts
     real w00 = real(0), w10 = real(0), w01 = real(0), w11 = real(0);
     real2 corner_uv = real2(0, 0);
     for (;;) {
@@ -145,6 +145,7 @@ PW_FUNCTION bool walk_segment(ProbeRecord probe, OctantSegment s, real t_start, 
         state.lookups += 1u;
         real maximum = max(max(w00, w10), max(w01, w11));
         passed = maximum <= real(0) || w_low > maximum * real(kCutExtension);
+        record = -1;
         if (!passed) {
           if ((probe.flags & 1u) != 0u) {
             int cell = gy * n + gx;

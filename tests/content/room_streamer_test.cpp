@@ -6,6 +6,8 @@
 
 #include <atomic>
 #include <fstream>
+#include <functional>
+#include <iterator>
 #include <map>
 #include <mutex>
 #include <semaphore>
@@ -194,6 +196,103 @@ TEST(RoomStreamer, ABadChunkCostsTheFineLevelNotTheWalk) {
   EXPECT_EQ(streamer.statistics().levels_failed, 1u);
   EXPECT_THAT(streamer.take_errors(), testing::ElementsAre(HasSubstr("77 of")));
   EXPECT_THAT(streamer.take_errors(), testing::IsEmpty());
+}
+
+// What can become of a chunk's file, by name.
+struct Damage {
+  const char* name;
+  void (*inflict)(const std::filesystem::path& file);
+};
+
+void rewrite(const std::filesystem::path& file, const std::function<void(std::string&)>& change) {
+  std::ifstream in(file, std::ios::binary);
+  std::string bytes(std::istreambuf_iterator<char>(in), {});
+  in.close();
+  change(bytes);
+  std::ofstream(file, std::ios::binary) << bytes;
+}
+
+const Damage kDamages[] = {
+    {"truncated", [](const std::filesystem::path& file) { std::filesystem::resize_file(file, 77); }},
+    {"empty", [](const std::filesystem::path& file) { std::filesystem::resize_file(file, 0); }},
+    {"longer", [](const std::filesystem::path& file) { std::ofstream(file, std::ios::app) << "x"; }},
+    {"of the wrong hash",
+     [](const std::filesystem::path& file) {
+       rewrite(file, [](std::string& bytes) { bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 1); });
+     }},
+    {"missing", [](const std::filesystem::path& file) { std::filesystem::remove(file); }},
+    {"a folder",
+     [](const std::filesystem::path& file) {
+       std::filesystem::remove(file);
+       std::filesystem::create_directories(file);
+     }},
+};
+
+TEST(RoomStreamer, WhateverBecomesOfAChunkItsRoomKeepsTheLevelBefore) {
+  for (const Damage& damage : kDamages) {
+    SCOPED_TRACE(damage.name);
+    const TemporaryFolder folder("streamer-damage");
+    const Manifest m = write_small_pack(folder.path(), 2);
+    damage.inflict(folder.path() / "chunks" / m.rooms[0].levels[1].chunk);
+    const FolderSource source(folder.path());
+    Deliveries deliveries;
+    RoomStreamer streamer(m, source, deliveries.sink(), [](LevelKey) {});
+    EXPECT_TRUE(streamer.settle({{1.0, 1.6, -2.0}, {}}, 10s));
+    EXPECT_EQ(deliveries.take().size(), 3u);
+    EXPECT_EQ(streamer.book().status({0, 0}), LevelStatus::kResident);
+    EXPECT_THAT(streamer.take_errors(), testing::ElementsAre(HasSubstr(m.rooms[0].levels[1].chunk)));
+    ASSERT_EQ(streamer.troubles().size(), 1u);
+    const TroubleRecord& trouble = streamer.troubles().at({0, 1});
+    EXPECT_EQ(trouble.tries, 1u);
+    EXPECT_FALSE(trouble.overcome);
+    EXPECT_THAT(trouble.reason, HasSubstr(m.rooms[0].levels[1].chunk));
+  }
+}
+
+TEST(RoomStreamer, AChunkThatIsNoneThoughItsHashIsRightIsDamage) {
+  const TemporaryFolder folder("streamer-no-chunk");
+  Manifest m = write_small_pack(folder.path(), 1);
+  PackWriter writer(folder.path());
+  const std::vector<std::byte> nonsense(5000, std::byte{0x5a});
+  m.rooms[0].levels[1].chunk = writer.add_chunk(nonsense);
+  m.rooms[0].levels[1].bytes_disk = nonsense.size();
+  const FolderSource source(folder.path());
+  Deliveries deliveries;
+  RoomStreamer streamer(m, source, deliveries.sink(), [](LevelKey) {});
+  EXPECT_TRUE(streamer.settle({{1.0, 1.6, -2.0}, {}}, 10s));
+  EXPECT_EQ(deliveries.take().size(), 1u);
+  EXPECT_EQ(streamer.book().status({0, 1}), LevelStatus::kFailed);
+}
+
+TEST(RoomStreamer, ADeviceWithoutSpaceIsToldOnceAndAskedAgain) {
+  const TemporaryFolder folder("streamer-no-space");
+  const Manifest m = write_small_pack(folder.path(), 3);
+  const FolderSource source(folder.path());
+  std::atomic<bool> is_full{true};
+  std::atomic<int> fine{0};
+  RoomStreamer streamer(
+      m, source,
+      [&](LoadedLevel&& loaded) {
+        if (loaded.level > 0 && is_full) throw std::runtime_error("VK_ERROR_OUT_OF_DEVICE_MEMORY");
+        fine += loaded.level > 0;
+      },
+      [](LevelKey) {});
+  const Walker walker{{1.0, 1.6, -2.0}, {}};
+  const auto update_until = [&](const std::function<bool()>& done) {
+    for (const auto end = std::chrono::steady_clock::now() + 20s; !done() && std::chrono::steady_clock::now() < end;) {
+      streamer.update(walker);
+      std::this_thread::sleep_for(2ms);
+    }
+    return done();
+  };
+  ASSERT_TRUE(update_until([&] { return streamer.troubled() >= 2; }));
+  EXPECT_EQ(streamer.book().status({0, 0}), LevelStatus::kResident);
+  EXPECT_THAT(streamer.take_errors(), testing::ElementsAre(HasSubstr("OUT_OF_DEVICE_MEMORY")));
+  is_full = false;
+  ASSERT_TRUE(update_until([&] { return streamer.troubled() == 0; }));
+  EXPECT_GE(fine, 2);
+  EXPECT_THAT(streamer.take_errors(), testing::ElementsAre(HasSubstr("loaded after all")));
+  for (const auto& [key, trouble] : streamer.troubles()) EXPECT_TRUE(trouble.overcome);
 }
 
 TEST(RoomStreamer, StaysWithinTheBudgetAndEvictsWhatIsBehind) {

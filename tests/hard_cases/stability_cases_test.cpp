@@ -9,9 +9,13 @@
 #include <limits>
 #include <map>
 #include <memory>
+#include <numbers>
+#include <utility>
+#include <vector>
 
 #include "content/error.h"
 #include "content/stability/cases.h"
+#include "content/stability/low_discrepancy.h"
 #include "content/stability/results.h"
 #include "content/stability/trial.h"
 #include "render/walk_batch.h"
@@ -43,6 +47,30 @@ Contender on(WalkBatch& batch) {
     }
     return answers;
   };
+}
+
+// A cell beyond the fold that such a ray touches says nothing, and nothing of it may stay: the first of these rays took
+// the cuts of one for those of the next cell it looked at.
+TEST(HardCases, ARayAlongTheFoldForgetsWhatLiesBeyondIt) {
+  const std::unique_ptr<Place> place = make_place(PlaceId::kRoom);
+  std::vector<std::pair<glm::dvec3, glm::dvec3>> rays{
+      {{-0.06397001445293427, -0.4842566251754761, 0.0}, {1.0, 0.0, 0.0}}};
+  for (std::uint32_t k = 0; k < 20000; ++k) {  // in the plane of the probe's horizon, half of them along an axis
+    const double turn_rad = k % 2 == 0 ? 0.0 : 2.0 * std::numbers::pi * radical_inverse(k);
+    rays.push_back({{3.0 * radical_inverse(k + 70000) - 1.5, 2.0 * radical_inverse(3 * k + 1) - 1.0, 0.0},
+                    {std::cos(turn_rad), std::sin(turn_rad), 0.0}});
+  }
+  int hits = 0;
+  for (const auto& [x, d] : rays) {
+    const Answer flat = walk_in_double(place->record, x, d, 0.0, 0);
+    const Answer pyramid = walk_in_double(place->record, x, d, 0.0, kStartLevel + kWithoutPlanes);
+    EXPECT_TRUE(pyramid.same_bits(flat)) << class_name(flat.cls) << " at " << flat.t << ", " << class_name(pyramid.cls)
+                                         << " at " << pyramid.t;
+    hits += flat.cls == kClassHit;
+  }
+  const auto& [x, d] = rays.front();
+  EXPECT_NEAR(walk_in_double(place->record, x, d, 0.0, 0).t, place->brute.trace(x, d).t, 1e-9);
+  EXPECT_GT(hits, 5000);
 }
 
 TEST(HardCases, HoldOnTheDeviceAndInFloatAndInDouble) {

@@ -6,8 +6,8 @@
 //   log=FILE                    a line for each xrEndFrame, and its header
 //   error_mm_per_ms=X           a pose asked for T ms ahead is X * T mm beside the true one (default 0)
 //   error_deg_per_ms=X          and turned by X * T degrees
-//   stall=CALL stall_ms=D       CALL (xrWaitFrame, xrBeginFrame, xrLocateViews, xrWaitSwapchainImage, xrEndFrame) takes
-//   stall_every=N               D ms longer in every Nth frame; of xrLocateViews the first call of a frame
+//   stall=CALL,CALL...          CALL (xrWaitFrame, xrBeginFrame, xrLocateViews, xrWaitSwapchainImage, xrEndFrame) takes
+//   stall_ms=D stall_every=N    D ms longer, once in every Nth frame; the calls take turns
 //   late_invalid_every=N        in every Nth frame no valid pose from the second locate on
 //   time_invalid_every=N        in every Nth frame XR_ERROR_TIME_INVALID from the first locate
 //   answer_invalid_every=N      every Nth locate outside a frame has no valid pose
@@ -21,6 +21,7 @@
 #include <openxr/openxr.h>
 #include <openxr/openxr_platform.h>
 
+#include <chrono>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
@@ -31,6 +32,7 @@
 #include <map>
 #include <sstream>
 #include <string>
+#include <thread>
 #include <vector>
 
 namespace {
@@ -49,6 +51,7 @@ struct Frame {
   XrTime display_time = 0;
   bool begun = false;
   int locates = 0;
+  double stalled_ms = 0.0;  // as it really was
   Head early;
   bool has_early = false;
 };
@@ -94,16 +97,21 @@ void read_settings() {
   }
   if (layer.settings.contains("log")) {
     layer.log.open(layer.settings["log"]);
-    layer.log << "frame,display_time,layers,late_mm,late_deg,early_mm,early_deg\n";
+    layer.log << "frame,display_time,layers,stalled_ms,late_mm,late_deg,early_mm,early_deg\n";
   }
 }
 
-void stall(const char* call) {
-  if (!layer.settings.contains("stall") || layer.settings["stall"] != call) return;
-  if (!layer.is_due("stall_every", layer.frame.number)) return;
-  const auto total_ns = static_cast<std::int64_t>(layer.number("stall_ms") * 1e6);
-  const timespec duration{total_ns / 1'000'000'000, total_ns % 1'000'000'000};
-  nanosleep(&duration, nullptr);
+void stall(const std::string& call) {
+  Frame& frame = layer.frame;
+  if (frame.stalled_ms > 0.0 || !layer.settings.contains("stall") || !layer.is_due("stall_every", frame.number)) return;
+  std::vector<std::string> calls;
+  std::istringstream all(layer.settings["stall"]);
+  for (std::string each; std::getline(all, each, ',');) calls.push_back(each);
+  const auto every = static_cast<std::uint64_t>(layer.number("stall_every"));
+  if (calls.at((frame.number / every - 1) % calls.size()) != call) return;
+  const auto before = std::chrono::steady_clock::now();
+  std::this_thread::sleep_for(std::chrono::duration<double, std::milli>(layer.number("stall_ms")));
+  frame.stalled_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - before).count();
 }
 
 XrTime now() {
@@ -215,11 +223,12 @@ XRAPI_ATTR XrResult XRAPI_CALL wait_image(XrSwapchain swapchain, const XrSwapcha
 }
 
 XRAPI_ATTR XrResult XRAPI_CALL end_frame(XrSession session, const XrFrameEndInfo* info) {
-  stall("xrEndFrame");
   Frame& frame = layer.frame;
   frame.begun = false;
+  const XrResult result = next<PFN_xrEndFrame>("xrEndFrame")(session, info);
+  stall("xrEndFrame");  // after what the runtime itself waits for, which it would hide
   if (layer.log.is_open()) {
-    layer.log << frame.number << ',' << info->displayTime << ',' << info->layerCount;
+    layer.log << frame.number << ',' << info->displayTime << ',' << info->layerCount << ',' << frame.stalled_ms;
     if (info->layerCount > 0 && info->layers[0]->type == XR_TYPE_COMPOSITION_LAYER_PROJECTION) {
       const auto& shown = *reinterpret_cast<const XrCompositionLayerProjection*>(info->layers[0]);
       const Head truth = true_head(info->displayTime);
@@ -230,7 +239,7 @@ XRAPI_ATTR XrResult XRAPI_CALL end_frame(XrSession session, const XrFrameEndInfo
     }
     layer.log << std::endl;
   }
-  return next<PFN_xrEndFrame>("xrEndFrame")(session, info);
+  return result;
 }
 
 XRAPI_ATTR XrResult XRAPI_CALL poll_event(XrInstance instance, XrEventDataBuffer* buffer) {

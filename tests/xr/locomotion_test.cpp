@@ -6,6 +6,7 @@
 #include <functional>
 #include <numbers>
 
+#include "xr/desktop_head.h"
 #include "xr/frame_pacer.h"
 #include "xr/mirror_pacer.h"
 #include "xr/path.h"
@@ -42,94 +43,488 @@ Pose eye_at(double x, double z, double yaw_rad = 0.0, double floor_m = 0.0) {
   return pose;
 }
 
-void walk(FloorWalker& walker, glm::dvec2 wish, double seconds) {
-  for (double t = 0; t < seconds; t += 0.01) walker.advance(wish, 1.0, 0.01);
+constexpr double kPi = std::numbers::pi;
+
+// Evenly over the unit square.
+glm::dvec2 r2_point(int i) {
+  // Roberts, The Unreasonable Effectiveness of Quasirandom Sequences (2018): steps of the plastic number.
+  return glm::fract(glm::dvec2(0.5) + static_cast<double>(i) * glm::dvec2(0.7548776662466927, 0.5698402909980532));
 }
+
+// Somebody at a desktop: the head stands in the middle of its rig.
+struct Person {
+  Person(const FloorMap& floor, const Pose& start, const LocomotionOptions& options = {})
+      : locomotion(floor, options), head(options.eye_height_m, start.pitch_rad) {
+    locomotion.place(start, head.pose(), {});
+  }
+  void walk(glm::dvec2 wish, double seconds) {
+    MoveInput input;
+    input.wish = wish;
+    input.speed_m_s = 1.0;
+    for (double t = 0; t < seconds; t += 0.01) locomotion.advance(head.pose(), input, 0.01);
+  }
+  void press(const MoveInput& input) {
+    locomotion.advance(head.pose(), input, 0.01);
+    for (int i = 0; i < 60; ++i) locomotion.advance(head.pose(), {}, 0.01);
+  }
+  Pose eye() const { return head.in_world(locomotion.rig()); }
+
+  Locomotion locomotion;
+  DesktopHead head;
+};
 
 // Two rooms of 4 m x 2 m, z in [0, 2) and [2.15, 4), with a wall of 0.15 m between them and a door at x in [3, 3.8).
-double two_rooms(double x, double z) { return z > 2.0 && z < 2.15 && !(x >= 3.0 && x < 3.8) ? NAN : 0.0; }
+double two_rooms(double x, double z) {
+  return z > 2.0 && z < 2.15 && !(x >= 3.0 && x < 3.8) ? NAN : 0.0;
+}
+// The same without a door.
+double two_cells(double, double z) {
+  return z > 2.0 && z < 2.15 ? NAN : 0.0;
+}
 
-TEST(FloorWalker, WalksForwardAlongItsYaw) {
+TEST(Locomotion, WalksForwardAlongItsYaw) {
   const FloorMap floor = make_floor({4, 4}, [](double, double) { return 0.0; });
-  FloorWalker ahead(floor, eye_at(2, 3));
-  walk(ahead, {0, 1}, 1.0);
-  EXPECT_NEAR(ahead.head().position_m.z, 2.0, 0.03);
-  EXPECT_NEAR(ahead.head().position_m.x, 2.0, 1e-9);
-  FloorWalker left(floor, eye_at(2, 3, std::numbers::pi / 2));
-  walk(left, {0, 1}, 1.0);
-  EXPECT_NEAR(left.head().position_m.x, 1.0, 0.03);
-  FloorWalker diagonal(floor, eye_at(2, 3));
-  walk(diagonal, {1, 1}, 1.0);  // two keys are not faster than one
-  EXPECT_NEAR(glm::distance(diagonal.head().position_m, glm::dvec3(2, kEyeHeight_m, 3)), 1.0, 0.03);
+  Person ahead(floor, eye_at(2, 3));
+  ahead.walk({0, 1}, 1.0);
+  EXPECT_NEAR(ahead.eye().position_m.z, 2.0, 0.03);
+  EXPECT_NEAR(ahead.eye().position_m.x, 2.0, 1e-9);
+  Person left(floor, eye_at(2, 3, kPi / 2));
+  left.walk({0, 1}, 1.0);
+  EXPECT_NEAR(left.eye().position_m.x, 1.0, 0.03);
+  Person diagonal(floor, eye_at(2, 3));
+  diagonal.walk({1, 1}, 1.0);  // two keys are not faster than one
+  EXPECT_NEAR(glm::distance(diagonal.eye().position_m, glm::dvec3(2, kEyeHeight_m, 3)), 1.0, 0.03);
 }
 
-TEST(FloorWalker, IsStoppedByWallsAtABodysWidthAndSlidesAlongThem) {
+TEST(Locomotion, GoesWhereTheHeadLooksAtTheStatedSpeed) {
+  const FloorMap floor = make_floor({12, 12}, [](double, double) { return 0.0; });
+  for (int i = 0; i < 64; ++i) {
+    const glm::dvec2 u = r2_point(i);
+    Locomotion locomotion(floor, {});
+    const HeadPose head{{u.x - 0.5, 1.7, u.y - 0.5}, 2 * kPi * u.y};
+    const double yaw_rad = 2 * kPi * u.x;
+    locomotion.place(eye_at(6, 6, yaw_rad), head, {});
+    // The head turns by a quarter in its rig: forward is where it looks now.
+    const HeadPose turned{head.position_m, head.yaw_rad + kPi / 2};
+    const glm::dvec3 before = locomotion.rig().world_from_rig(head.position_m);
+    MoveInput input;
+    input.wish = {0, 1};
+    for (int k = 0; k < 100; ++k) locomotion.advance(turned, input, 0.01);
+    const glm::dvec3 way = locomotion.rig().world_from_rig(head.position_m) - before;
+    EXPECT_NEAR(way.x, -std::sin(yaw_rad + kPi / 2) * kWalkSpeed_m_s, 1e-6);
+    EXPECT_NEAR(way.z, -std::cos(yaw_rad + kPi / 2) * kWalkSpeed_m_s, 1e-6);
+  }
+}
+
+TEST(Locomotion, HoldsStillForAStickInItsDeadZone) {
+  const FloorMap floor = make_floor({4, 4}, [](double, double) { return 0.0; });
+  Person person(floor, eye_at(2, 2), {.turn = TurnStyle::kSmooth, .vignette = true});
+  MoveInput input;
+  input.wish = {0.1, -0.1};
+  input.turn = 0.12;
+  for (int i = 0; i < 100; ++i) person.locomotion.advance(person.head.pose(), input, 0.01);
+  EXPECT_EQ(person.eye().position_m, glm::dvec3(2, kEyeHeight_m, 2));
+  EXPECT_EQ(person.eye().yaw_rad, 0.0);
+  EXPECT_EQ(person.locomotion.vignette(), 0.0f);
+}
+
+TEST(Locomotion, IsStoppedByWallsAtABodysWidthAndSlidesAlongThem) {
   const FloorMap floor = make_floor({4, 4}, two_rooms);
-  FloorWalker walker(floor, eye_at(1, 1));
-  walk(walker, {0, -1}, 5.0);
-  EXPECT_LT(walker.head().position_m.z, 2.0 - kBodyRadius_m + 0.06);
-  EXPECT_GT(walker.head().position_m.z, 1.7);
-  const double x = walker.head().position_m.x;
-  walk(walker, {0.7, -0.7}, 1.0);
-  EXPECT_GT(walker.head().position_m.x, x + 0.5);
-  EXPECT_LT(walker.head().position_m.z, 2.0);
+  Person person(floor, eye_at(1, 1));
+  person.walk({0, -1}, 5.0);
+  EXPECT_LT(person.eye().position_m.z, 2.0 - kBodyRadius_m + 0.06);
+  EXPECT_GT(person.eye().position_m.z, 1.7);
+  const double x = person.eye().position_m.x;
+  person.walk({0.7, -0.7}, 1.0);
+  EXPECT_GT(person.eye().position_m.x, x + 0.5);
+  EXPECT_LT(person.eye().position_m.z, 2.0);
 }
 
-TEST(FloorWalker, GoesThroughDoors) {
+TEST(Locomotion, GoesThroughDoors) {
   const FloorMap floor = make_floor({4, 4}, two_rooms);
-  FloorWalker walker(floor, eye_at(3.4, 1));
-  walk(walker, {0, -1}, 2.0);
-  EXPECT_NEAR(walker.head().position_m.z, 3.0, 0.1);
+  Person person(floor, eye_at(3.4, 1));
+  person.walk({0, -1}, 2.0);
+  EXPECT_NEAR(person.eye().position_m.z, 3.0, 0.1);
 }
 
-TEST(FloorWalker, ClimbsStepsSmoothlyButNoLedge) {
+TEST(Locomotion, GoesThroughWallsOnlyWhenToldTo) {
+  const FloorMap floor = make_floor({4, 4}, two_cells);
+  Person held(floor, eye_at(1, 1));
+  held.walk({0, -1}, 3.0);
+  EXPECT_LT(held.eye().position_m.z, 2.0);
+  Person ghost(floor, eye_at(1, 1), {.through_walls = true});
+  ghost.walk({0, -1}, 2.0);
+  EXPECT_NEAR(ghost.eye().position_m.z, 3.0, 0.05);
+  EXPECT_NEAR(ghost.eye().position_m.y, kEyeHeight_m, 1e-6);
+}
+
+// Whatever sticks, turns, throws and the head itself within reach of its middle do, nobody gets to the other side.
+TEST(Locomotion, NeverGetsThroughAWall) {
+  const FloorMap floor = make_floor({4, 4}, two_cells);
+  for (int run = 0; run < 8; ++run) {
+    Locomotion locomotion(floor, {.turn = run % 2 == 0 ? TurnStyle::kSnap : TurnStyle::kSmooth});
+    HeadPose head{{0, 1.6, 0}, 0.0};
+    locomotion.place(eye_at(2, 1, run), head, {});
+    for (int i = 0; i < 500; ++i) {
+      const glm::dvec2 u = r2_point(run * 1000 + i), v = r2_point(run * 777 + 3 * i);
+      MoveInput input;
+      input.wish = 2.0 * u - 1.0;
+      input.speed_m_s = kRunSpeed_m_s;
+      input.turn = 2.0 * v.x - 1.0;
+      const double aim_rad = 2 * kPi * v.y;
+      const glm::dvec3 hand = head.position_m + glm::dvec3(0.5 * std::sin(6.3 * u.x), -0.3, 0.5 * std::cos(6.3 * u.x));
+      input.aim = AimRay{hand, {std::sin(aim_rad), 2.0 * u.y - 1.0, std::cos(aim_rad)}};
+      input.teleport = i % 7 == 0;
+      input.recentre = i % 31 == 0;
+      locomotion.advance(head, input, 0.25 * v.x);
+      const glm::dvec3 at = locomotion.rig().world_from_rig(head.position_m);
+      ASSERT_LT(at.z, 2.0) << run << " " << i;
+      ASSERT_GT(at.z, 0.0);
+      ASSERT_GT(at.x, 0.0);
+      ASSERT_LT(at.x, 4.0);
+      if (locomotion.aim() != nullptr && locomotion.aim()->landing_m) {
+        ASSERT_LT(locomotion.aim()->landing_m->z, 2.0);
+      }
+    }
+  }
+}
+
+TEST(Locomotion, BringsBackAHeadThatLeantIntoAWall) {
+  const FloorMap floor = make_floor({4, 4}, two_cells);
+  Locomotion locomotion(floor, {});
+  const HeadPose upright{{0, 1.6, 0}, 0.0};
+  locomotion.place(eye_at(2, 1.6), upright, {});
+  // Looks along -z and leans backwards, half a metre, into the wall.
+  const HeadPose leaning{{0, 1.6, 0.47}, 0.0};
+  const auto z_after = [&](double wish) {
+    MoveInput input;
+    input.wish = {0, wish};
+    for (int i = 0; i < 100; ++i) locomotion.advance(leaning, input, 0.01);
+    return locomotion.rig().world_from_rig(leaning.position_m).z;
+  };
+  EXPECT_NEAR(z_after(-1.0), 2.07, 0.001) << "the stick does not push it through";
+  EXPECT_LT(z_after(1.0), 1.5) << "but lets it come back";
+}
+
+TEST(Locomotion, ClimbsStepsSmoothlyButNoLedge) {
   // Steps of 0.2 m every 0.3 m up to 1 m, and a ledge of 0.6 m at z = 0.5.
   const FloorMap floor = make_floor({2, 6}, [](double, double z) {
     if (z < 0.5) return 1.6;
     return std::clamp(std::floor((4.0 - z) / 0.3) * 0.2, 0.0, 1.0);
   });
-  FloorWalker walker(floor, eye_at(1, 5.5));
-  double last_y = walker.head().position_m.y;
+  Person person(floor, eye_at(1, 5.5));
+  double last_y = person.eye().position_m.y;
   for (int i = 0; i < 800; ++i) {
-    walker.advance({0, 1}, 1.0, 0.01);
-    const double y = walker.head().position_m.y;
+    person.walk({0, 1}, 0.005);
+    const double y = person.eye().position_m.y;
     EXPECT_LE(std::abs(y - last_y), 0.05);
     last_y = y;
   }
   EXPECT_NEAR(last_y, 1.0 + kEyeHeight_m, 0.01);
-  EXPECT_GT(walker.head().position_m.z, 0.5);
+  EXPECT_GT(person.eye().position_m.z, 0.5);
 }
 
-TEST(FloorWalker, TeleportsInTheDark) {
+TEST(Locomotion, TurnsAboutTheHead) {
   const FloorMap floor = make_floor({4, 4}, [](double, double) { return 0.0; });
-  FloorWalker walker(floor, eye_at(1, 1));
-  walker.teleport({3, 0, 3});
+  for (const TurnStyle style : {TurnStyle::kSnap, TurnStyle::kSmooth}) {
+    for (int i = 0; i < 256; ++i) {
+      const glm::dvec2 u = r2_point(i), v = r2_point(i + 5000);
+      LocomotionOptions options;
+      options.turn = style;
+      options.snap_rad = i % 2 == 0 ? kPi / 6 : kPi / 4;
+      options.world_scale = std::exp2(4.0 * v.y - 2.0);
+      Locomotion locomotion(floor, options);
+      const HeadPose head{{4.0 * u.x - 2.0, 0.8 + u.y, 4.0 * u.y - 2.0}, 2 * kPi * v.x};
+      locomotion.place(eye_at(2, 2, 2 * kPi * u.x), head, {});
+      const glm::dvec3 before = locomotion.rig().world_from_rig(head.position_m);
+      const double yaw_rad = locomotion.rig().yaw_rad;
+      MoveInput input;
+      input.turn = i % 3 == 0 ? -1.0 : 1.0;
+      double turned_rad = 0.0;
+      for (int k = 0; k < 50; ++k) {
+        locomotion.advance(head, input, 0.011);
+        EXPECT_LT(glm::distance(locomotion.rig().world_from_rig(head.position_m), before), 1e-9);
+        turned_rad = std::remainder(locomotion.rig().yaw_rad - yaw_rad, 2 * kPi);
+      }
+      const double wanted = style == TurnStyle::kSnap ? options.snap_rad : kTurnSpeed_rad_s * 50 * 0.011;
+      EXPECT_NEAR(turned_rad, -input.turn * wanted, 1e-9) << "right is clockwise; a held stick snaps once";
+    }
+  }
+}
+
+TEST(Locomotion, SnapsAgainOnlyAfterTheStickCameBack) {
+  const FloorMap floor = make_floor({4, 4}, [](double, double) { return 0.0; });
+  Person person(floor, eye_at(2, 2));
+  const auto push = [&](double turn) {
+    MoveInput input;
+    input.turn = turn;
+    person.locomotion.advance(person.head.pose(), input, 0.01);
+    return std::lround(glm::degrees(person.eye().yaw_rad));
+  };
+  EXPECT_EQ(push(0.6), 0);
+  EXPECT_EQ(push(0.8), -30);
+  EXPECT_EQ(push(0.5), -30);  // trembles about the threshold
+  EXPECT_EQ(push(0.9), -30);
+  EXPECT_EQ(push(0.1), -30);
+  EXPECT_EQ(push(-1.0), 0);
+  Person still(floor, eye_at(2, 2), {.turn = TurnStyle::kOff});
+  MoveInput input;
+  input.turn = 1.0;
+  still.press(input);
+  EXPECT_EQ(still.eye().yaw_rad, 0.0);
+}
+
+TEST(Locomotion, NarrowsTheViewOnlyWhileItMovesSmoothly) {
+  const FloorMap floor = make_floor({4, 4}, two_cells);
+  Person person(floor, eye_at(2, 1), {.turn = TurnStyle::kSmooth, .vignette = true});
+  MoveInput turn;
+  turn.turn = 1.0;
+  for (int i = 0; i < 30; ++i) person.locomotion.advance(person.head.pose(), turn, 0.01);
+  EXPECT_EQ(person.locomotion.vignette(), 1.0f);
+  person.walk({0, 0}, 0.1);
+  EXPECT_GT(person.locomotion.vignette(), 0.0f) << "gradually";
+  person.walk({0, 0}, 0.5);
+  EXPECT_EQ(person.locomotion.vignette(), 0.0f);
+  person.walk({0.5, 1.0}, 0.3);
+  EXPECT_EQ(person.locomotion.vignette(), 1.0f);
+  person.walk({0, 1}, 5.0);  // into a corner, where nothing moves
+  EXPECT_EQ(person.locomotion.vignette(), 0.0f);
+  Person without(floor, eye_at(2, 1), {.turn = TurnStyle::kSmooth, .vignette = false});
+  without.walk({0, 1}, 0.3);
+  EXPECT_EQ(without.locomotion.vignette(), 0.0f);
+}
+
+TEST(Locomotion, TeleportsInTheDark) {
+  const FloorMap floor = make_floor({4, 4}, [](double, double) { return 0.0; });
+  Person person(floor, eye_at(1, 1));
+  MoveInput input;
+  input.aim = AimRay{{0, kEyeHeight_m, 0}, {2, -kEyeHeight_m, 2}, true};
+  person.locomotion.advance(person.head.pose(), input, 0.01);
+  ASSERT_NE(person.locomotion.aim(), nullptr);
+  ASSERT_TRUE(person.locomotion.aim()->landing_m);
+  const glm::dvec3 promised = *person.locomotion.aim()->landing_m;
+  EXPECT_NEAR(glm::distance(promised, glm::dvec3(3, 0, 3)), 0.0, 0.04);
+  EXPECT_EQ(person.locomotion.fade(), 0.0f) << "aiming alone leads nowhere";
+  input.teleport = true;
+  person.locomotion.advance(person.head.pose(), input, 0.01);
+  EXPECT_EQ(person.locomotion.aim(), nullptr);
   float darkest = 0.0f;
   for (int i = 0; i < 60; ++i) {
-    const glm::dvec3 before = walker.head().position_m;
-    walker.advance({0, 0}, 1.0, 0.01);
-    if (walker.head().position_m != before) {
-      EXPECT_GT(walker.fade(), 0.9f);
+    const glm::dvec3 before = person.eye().position_m;
+    person.locomotion.advance(person.head.pose(), {}, 0.01);
+    if (person.eye().position_m != before) {
+      EXPECT_GT(person.locomotion.fade(), 0.9f);
     }
-    darkest = std::max(darkest, walker.fade());
+    darkest = std::max(darkest, person.locomotion.fade());
   }
   EXPECT_GE(darkest, 0.99f);
-  EXPECT_EQ(walker.fade(), 0.0f);
-  EXPECT_NEAR(glm::distance(walker.head().position_m, glm::dvec3(3, kEyeHeight_m, 3)), 0.0, 1e-6);
+  EXPECT_EQ(person.locomotion.fade(), 0.0f);
+  EXPECT_NEAR(glm::distance(person.eye().position_m, promised + glm::dvec3(0, kEyeHeight_m, 0)), 0.0, 1e-6)
+      << "where the ring was";
 }
 
-TEST(FloorUnderRay, FindsTheFloorInViewAndNothingBehindWalls) {
+TEST(Locomotion, TeleportsAWearerWhoStandsBesideTheMiddle) {
+  const FloorMap floor = make_floor({6, 6}, [](double, double) { return 0.0; });
+  for (int i = 0; i < 64; ++i) {
+    const glm::dvec2 u = r2_point(i);
+    Locomotion locomotion(floor, {});
+    const HeadPose head{{u.x - 0.5, 1.7, u.y - 0.5}, 2 * kPi * u.y};
+    locomotion.place(eye_at(3, 3, 2 * kPi * u.x), head, {});
+    MoveInput input;
+    input.aim = AimRay{head.position_m + glm::dvec3(0.2, -0.4, 0.1), {std::sin(6.3 * u.x), -1.0, std::cos(6.3 * u.x)}};
+    locomotion.advance(head, input, 0.01);
+    ASSERT_TRUE(locomotion.aim() != nullptr && locomotion.aim()->landing_m);
+    const glm::dvec3 promised = *locomotion.aim()->landing_m;
+    input.teleport = true;
+    locomotion.advance(head, input, 0.01);
+    for (int k = 0; k < 60; ++k) locomotion.advance(head, {}, 0.01);
+    EXPECT_LT(glm::distance(locomotion.rig().world_from_rig(head.position_m), promised + glm::dvec3(0, 1.7, 0)), 1e-9);
+    EXPECT_NEAR(std::remainder(locomotion.rig().yaw_rad + head.yaw_rad - 2 * kPi * u.x, 2 * kPi), 0.0, 1e-9);
+  }
+}
+
+TEST(Locomotion, KnowsNoWayForAHandThroughAWall) {
+  const FloorMap floor = make_floor({4, 4}, two_cells);
+  Person person(floor, eye_at(2, 1.7));
+  MoveInput input;
+  input.aim = AimRay{{0, 1.3, 0.6}, {0, -1, 0.5}};  // the hand is beyond it
+  person.locomotion.advance(person.head.pose(), input, 0.01);
+  ASSERT_NE(person.locomotion.aim(), nullptr);
+  EXPECT_FALSE(person.locomotion.aim()->landing_m);
+  input.teleport = true;
+  person.press(input);
+  EXPECT_EQ(person.eye().position_m, glm::dvec3(2, kEyeHeight_m, 1.7));
+}
+
+TEST(Locomotion, RecentresToFreeFloorWhereverTheWearerHasGot) {
+  const FloorMap floor = make_floor({4, 4}, two_cells);
+  Locomotion locomotion(floor, {});
+  const HeadPose middle{{0, 1.6, 0}, 0.0};
+  locomotion.place(eye_at(2, 1), middle, {});
+  // Walks to the wall by stick, then leans into it; and somebody who was put down inside the wall at first.
+  MoveInput back;
+  back.wish = {0, -1};
+  for (int i = 0; i < 100; ++i) locomotion.advance(middle, back, 0.01);
+  const HeadPose leaning{{0.3, 1.5, 0.4}, 1.0};
+  MoveInput menu;
+  menu.recentre = true;
+  locomotion.advance(leaning, menu, 0.01);
+  for (int i = 0; i < 60; ++i) locomotion.advance(leaning, {}, 0.01);
+  const glm::dvec3 at = locomotion.rig().world_from_rig(leaning.position_m);
+  EXPECT_TRUE(can_stand(floor, {at.x, 0, at.z}));
+  EXPECT_LT(at.z, 2.0);
+  EXPECT_NEAR(at.y, 1.5, 1e-9);
+
+  Person walled(floor, eye_at(2, 2.07));
+  walled.press(menu);
+  EXPECT_TRUE(can_stand(floor, {walled.eye().position_m.x, 0, walled.eye().position_m.z}));
+}
+
+TEST(Locomotion, PutsSeatedEyesAtTheStatedHeightAtRestAndAtRecentring) {
+  const FloorMap floor = make_floor({4, 4}, [](double, double) { return 2.0; });
+  for (const double eye_height_m : {1.2, 1.6}) {
+    Locomotion locomotion(floor, {.eye_height_m = eye_height_m});
+    HeadPose head{{0.1, 0.0, 0.2}, 0.3};  // the origin is the resting place
+    locomotion.place(eye_at(2, 2, 0.0, 2.0), head, {-eye_height_m, false});
+    EXPECT_NEAR(locomotion.rig().world_from_rig(head.position_m).y, 2.0 + eye_height_m, 1e-9);
+    head.position_m.y = -0.15;  // sinks into the chair
+    locomotion.advance(head, {}, 0.01);
+    EXPECT_NEAR(locomotion.rig().world_from_rig(head.position_m).y, 2.0 + eye_height_m - 0.15, 1e-9);
+    MoveInput menu;
+    menu.recentre = true;
+    locomotion.advance(head, menu, 0.01);
+    for (int i = 0; i < 60; ++i) locomotion.advance(head, {}, 0.01);
+    EXPECT_NEAR(locomotion.rig().world_from_rig(head.position_m).y, 2.0 + eye_height_m, 1e-9);
+  }
+  // A rig whose floor is known keeps it: who kneels stays low.
+  Locomotion standing(floor, {});
+  const HeadPose kneeling{{0, 0.9, 0}, 0.0};
+  standing.place(eye_at(2, 2, 0.0, 2.0), kneeling, {});
+  MoveInput menu;
+  menu.recentre = true;
+  standing.advance(kneeling, menu, 0.01);
+  for (int i = 0; i < 60; ++i) standing.advance(kneeling, {}, 0.01);
+  EXPECT_NEAR(standing.rig().world_from_rig(kneeling.position_m).y, 2.9, 1e-9);
+}
+
+TEST(Locomotion, ScalesTheWearerNotTheFloor) {
+  const FloorMap floor = make_floor({40, 40}, [](double, double) { return 1.0; }, 20.0f);
+  for (const double scale : {0.5, 1.0, 2.0, 4.0}) {
+    LocomotionOptions options;
+    options.world_scale = scale;
+    Locomotion locomotion(floor, options);
+    const HeadPose head{{0.3, 1.7, 0.1}, 0.0};
+    locomotion.place(eye_at(20, 20, 0.4, 1.0), head, {});
+    const Rig& rig = locomotion.rig();
+    EXPECT_NEAR(rig.world_from_rig({0, 0, 0}).y, 1.0, 1e-9) << "the wearer's floor lies on the scene's";
+    EXPECT_NEAR(rig.world_from_rig(head.position_m).y, 1.0 + 1.7 * scale, 1e-9);
+    EXPECT_NEAR(rig.world_from_rig(head.position_m).x, 20.0, 1e-9);
+    const glm::dvec3 half_ipd(0.0315, 0, 0);
+    EXPECT_NEAR(
+        glm::distance(rig.world_from_rig(head.position_m - half_ipd), rig.world_from_rig(head.position_m + half_ipd)),
+        0.063 * scale, 1e-9);
+    const HeadPose stepped{head.position_m + glm::dvec3(0, 0, -1), 0.0};
+    EXPECT_NEAR(glm::distance(rig.world_from_rig(stepped.position_m), rig.world_from_rig(head.position_m)), scale,
+                1e-9);
+    MoveInput input;
+    input.wish = {0, 1};
+    const glm::dvec3 before = rig.world_from_rig(head.position_m);
+    for (int i = 0; i < 100; ++i) locomotion.advance(head, input, 0.01);
+    EXPECT_NEAR(glm::distance(locomotion.rig().world_from_rig(head.position_m), before), kWalkSpeed_m_s * scale, 1e-6);
+  }
+}
+
+TEST(Locomotion, StartsOverTheFloorBelowHoweverHighTheHead) {
+  const FloorMap floor = make_floor({4, 4}, [](double, double) { return 0.5; });
+  for (const double eye_m : {0.9, 1.6, 2.0}) {
+    Locomotion locomotion(floor, {});
+    Pose anchor = eye_at(2, 2);
+    anchor.position_m.y = 0.5 + eye_m;
+    locomotion.place(anchor, {{0, eye_m, 0}, 0.0}, {});
+    EXPECT_NEAR(locomotion.rig().position_m.y, 0.5, 1e-9) << eye_m;
+    EXPECT_NEAR(locomotion.anchor({{0, eye_m, 0}, 0.0}).position_m.y, 0.5 + kEyeHeight_m, 1e-9);
+  }
+  Locomotion floating(FloorMap{}, {});
+  floating.place(eye_at(2, 2), {{0, kEyeHeight_m, 0}, 0.0}, {});
+  EXPECT_NEAR(floating.rig().world_from_rig({0, kEyeHeight_m, 0}).y, kEyeHeight_m, 1e-9);
+}
+
+TEST(FloorArc, OfNoGravityFindsTheFloorInViewAndNothingBehindWalls) {
   const FloorMap floor = make_floor({4, 4}, two_rooms);
+  const auto landing = [&](glm::dvec3 from, glm::dvec3 direction) {
+    return arc_to_floor(floor, from, direction, 0.0, 12.0).landing_m;
+  };
   const glm::dvec3 eye(1, kEyeHeight_m, 1);
-  const auto near = floor_under_ray(floor, eye, {0, -1.6, 0.5});
+  const auto near = landing(eye, {0, -1.6, 0.5});
   ASSERT_TRUE(near);
   EXPECT_NEAR(near->z, 1.5, 0.03);
-  EXPECT_FALSE(floor_under_ray(floor, eye, {0, -1.6, 2.0}));  // the floor beyond the wall
-  EXPECT_FALSE(floor_under_ray(floor, eye, {0, 0.2, 1}));     // the ceiling
-  EXPECT_FALSE(floor_under_ray(floor, eye, {0, 0, 0}));
-  const auto through_door = floor_under_ray(floor, {3.4, kEyeHeight_m, 1}, {0, -1.6, 2.0});
+  EXPECT_FALSE(landing(eye, {0, -1.6, 2.0}));  // the floor beyond the wall
+  EXPECT_FALSE(landing(eye, {0, 0.2, 1}));     // the ceiling
+  EXPECT_FALSE(landing(eye, {0, 0, 0}));
+  EXPECT_FALSE(landing(eye, {NAN, 0, 0}));
+  const auto through_door = landing({3.4, kEyeHeight_m, 1}, {0, -1.6, 2.0});
   ASSERT_TRUE(through_door);
   EXPECT_NEAR(through_door->z, 3.0, 0.03);
+}
+
+TEST(FloorArc, FliesAParabolaAndLandsOnIt) {
+  const FloorMap floor = make_floor({30, 30}, [](double, double) { return 0.25; }, 20.0f);
+  for (int i = 0; i < 256; ++i) {
+    const glm::dvec2 u = r2_point(i);
+    const double pitch_rad = (u.x - 0.5) * 3.0, yaw_rad = 2 * kPi * u.y;
+    const glm::dvec3 from(15, 1.45, 15);
+    const double across_m_s = kThrowSpeed_m_s * std::cos(pitch_rad), up_m_s = kThrowSpeed_m_s * std::sin(pitch_rad);
+    const FloorArc arc = arc_to_floor(
+        floor, from, {across_m_s * std::sin(yaw_rad), up_m_s, across_m_s * std::cos(yaw_rad)}, kGravity_m_s2, 60.0);
+    ASSERT_TRUE(arc.landing_m) << pitch_rad;
+    const double t_s = (up_m_s + std::sqrt(up_m_s * up_m_s + 2 * kGravity_m_s2 * 1.2)) / kGravity_m_s2;
+    EXPECT_NEAR(glm::distance(glm::dvec2(arc.landing_m->x, arc.landing_m->z), {15, 15}), across_m_s * t_s, 0.04);
+    EXPECT_FLOAT_EQ(static_cast<float>(arc.landing_m->y), 0.25f);
+    ASSERT_EQ(arc.points_m.size(), static_cast<std::size_t>(FloorArc::kPoints));
+    EXPECT_EQ(arc.points_m.front(), from);
+    EXPECT_EQ(arc.points_m.back(), *arc.landing_m);
+    for (const glm::dvec3& point : arc.points_m) {
+      const double t = glm::distance(glm::dvec2(point.x, point.z), {15, 15}) / across_m_s;
+      EXPECT_NEAR(point.y, 1.45 + up_m_s * t - 0.5 * kGravity_m_s2 * t * t, 0.05);
+    }
+  }
+}
+
+TEST(FloorArc, ClearsARailingThatARayDoesNotAndNoWall) {
+  // A step of 0.4 m at z in [2, 2.3), which a flat throw goes over.
+  const FloorMap step = make_floor({4, 8}, [](double, double z) { return z > 2 && z < 2.3 ? 0.4 : 0.0; });
+  const FloorArc over = arc_to_floor(step, {2, 1.2, 1}, {0, 2.0, 4.0}, kGravity_m_s2, 14.0);
+  ASSERT_TRUE(over.landing_m);
+  EXPECT_GT(over.landing_m->z, 2.3);
+  const FloorMap cells = make_floor({4, 4}, two_cells);
+  for (int i = 0; i < 512; ++i) {
+    const glm::dvec2 u = r2_point(i), v = r2_point(i + 9999);
+    const double yaw_rad = 2 * kPi * v.x, pitch_rad = (v.y - 0.5) * 3.0;
+    const glm::dvec3 direction(std::cos(pitch_rad) * std::sin(yaw_rad), std::sin(pitch_rad),
+                               std::cos(pitch_rad) * std::cos(yaw_rad));
+    const FloorArc arc =
+        arc_to_floor(cells, {4 * u.x, 1.2, 2 * u.y}, direction * kThrowSpeed_m_s, kGravity_m_s2, kTeleportReach_m);
+    if (arc.landing_m) {
+      EXPECT_LT(arc.landing_m->z, 2.0 + 1e-9);
+    }
+    for (const glm::dvec3& point : arc.points_m)
+      EXPECT_LT(point.z, 2.06) << "the arc is drawn to the wall and no further";
+  }
+}
+
+TEST(StandingNear, GivesABodyRoomOnTheSameSideOfTheWall) {
+  const FloorMap floor = make_floor({4, 4}, two_cells);
+  for (int i = 0; i < 256; ++i) {
+    const glm::dvec2 u = r2_point(i);
+    const glm::dvec3 foot(0.3 + 3.4 * u.x, 0, 0.3 + 1.69 * u.y);  // up to 1 cm from the wall
+    const glm::dvec3 there = standing_near(floor, foot);
+    EXPECT_TRUE(can_stand(floor, there));
+    EXPECT_LT(there.z, 2.0);
+    EXPECT_LE(glm::distance(there, foot), 2 * kBodyRadius_m + 1e-9);
+    if (can_stand(floor, foot)) {
+      EXPECT_EQ(there, foot);
+    }
+  }
 }
 
 TEST(ClearWay, EndsAtWallsAndGoesThroughDoors) {
@@ -140,8 +535,10 @@ TEST(ClearWay, EndsAtWallsAndGoesThroughDoors) {
   EXPECT_FALSE(is_clear_way(floor, eye, {1, 1.3, 3})) << "a hand held through the wall";
   EXPECT_FALSE(is_clear_way(floor, {1, 1.3, 3}, eye));
   EXPECT_TRUE(is_clear_way(floor, {3.4, kEyeHeight_m, 1}, {3.4, 1.3, 3})) << "through the door";
-  const FloorMap with_table = make_floor({4, 4}, [](double x, double z) { return x > 2 && x < 3 && z > 2 && z < 3 ? NAN : 0.0; });
-  EXPECT_FALSE(is_clear_way(with_table, {1, kEyeHeight_m, 2.5}, {3.5, 1.3, 2.5})) << "columns cannot tell a table from a wall";
+  const FloorMap with_table =
+      make_floor({4, 4}, [](double x, double z) { return x > 2 && x < 3 && z > 2 && z < 3 ? NAN : 0.0; });
+  EXPECT_FALSE(is_clear_way(with_table, {1, kEyeHeight_m, 2.5}, {3.5, 1.3, 2.5}))
+      << "columns cannot tell a table from a wall";
   EXPECT_TRUE(is_clear_way(FloorMap{}, eye, {1, 1.3, 30})) << "without a floor nothing is known to be in the way";
 }
 
@@ -155,17 +552,11 @@ TEST(WallFade, DarkensAndComesBackGradually) {
   EXPECT_NEAR(fade.darkness(), 0.5f, 1e-5f);
 }
 
-TEST(Rig, PutsTheWearersHeadWhereItShallBe) {
-  const glm::dvec3 head_m(0.4, 1.7, -0.3);
-  const Rig rig = Rig::with_head_at({5, 2, 6}, 1.0, head_m, 0.25);
-  const glm::dvec3 world = rig.world_from_rig(head_m);
-  EXPECT_NEAR(glm::distance(world, glm::dvec3(5, 3.7, 6)), 0.0, 1e-12);
-  const Pose pose = pose_of(world, rig.world_from_rig(orientation_of(0.25, 0.1)));
-  EXPECT_NEAR(pose.yaw_rad, 1.0, 1e-12);
-  EXPECT_NEAR(pose.pitch_rad, 0.1, 1e-12);
-  const Rig there = rig.teleported({1, 0, 1}, head_m);
-  EXPECT_NEAR(glm::distance(there.world_from_rig(head_m), glm::dvec3(1, 1.7, 1)), 0.0, 1e-12);
-  EXPECT_EQ(there.yaw_rad, rig.yaw_rad);
+TEST(DesktopHead, LooksFurtherThanStraightUpNowhere) {
+  DesktopHead head(1.6, 0.0);
+  head.look(7.0, 3.0);
+  EXPECT_NEAR(head.in_rig().pitch_rad, glm::radians(85.0), 1e-12);
+  EXPECT_NEAR(head.in_rig().yaw_rad, 7.0 - 2 * kPi, 1e-12);
 }
 
 TEST(FramePacer, KeepsToItsTicksAndSkipsThoseItMissed) {

@@ -14,9 +14,11 @@
 #include "tools/probewalk/commands.h"
 #include "tools/probewalk/foveation_option.h"
 #include "tools/probewalk/method_options.h"
+#include "tools/probewalk/walking_options.h"
 #include "xr/eye_scale.h"
 #include "xr/latency/run_files.h"
 #include "xr/latency/summary_json.h"
+#include "xr/ledger_cost.h"
 #include "xr/walk.h"
 
 namespace probewalk {
@@ -28,11 +30,12 @@ constexpr std::uint32_t kMaxEyeSide_px = 8192;
 struct WalkArguments {
   WalkOptions walk;
   MethodOptions method;
+  std::shared_ptr<WalkingOptions> walking = std::make_shared<WalkingOptions>();
   std::string eye_size, eye_scale;
   std::string path, record, report, pictures, cache;
   std::uint64_t frames = 0;
   double seconds = 0.0;
-  std::uint64_t budget_mib = 0, cache_mib = 0;
+  std::uint64_t budget_mib = 0, cache_mib = 0, ledger_cost_pairs = 0;
   bool settle = false, realtime = false;
   ShownEyes mirror = ShownEyes::kBoth;
   CLI::Option* mirror_option = nullptr;
@@ -71,6 +74,15 @@ void print_ending(const WalkResult& result, const WalkArguments& arguments) {
   if (result.pictures > 0) fmt::print("{} pictures in {}\n", result.pictures, arguments.pictures);
   if (!arguments.record.empty()) fmt::print("path: {}\n", arguments.record);
   if (!arguments.report.empty()) fmt::print("report: {}/index.html\n", arguments.report);
+}
+
+std::string in_words(const LedgerCost& cost) {
+  const auto percent = [](const CostFraction& fraction) {
+    return fmt::format("{:+.2f} % (quartiles {:+.2f} to {:+.2f} %)", 100.0 * fraction.median, 100.0 * fraction.low,
+                       100.0 * fraction.high);
+  };
+  return fmt::format("the ledger's cost, with it against without, {} pairs: {} of frame time, {} of processor time",
+                     cost.pairs, percent(cost.frame_time), percent(cost.cpu_time));
 }
 
 // The exit code of a walk that did not end by itself.
@@ -129,11 +141,17 @@ void run_walk(WalkArguments arguments, const CommonOptions& common) {
         fmt::format("--scene is read for methods that need maps; method {} needs none", arguments.method.method));
   }
   const std::unique_ptr<Progress> progress = make_progress(common);
+  apply_walking_options(*arguments.walking, walk_options.display, *progress);
   std::unique_ptr<BaselineMaps> maps;
   if (walk_options.choice.needs_maps()) {
     const Pack pack = open_pack(walk_options.pack.string(), [&] { return progress->cancelled(); });
     maps = chosen_maps(walk_options.choice, arguments.method, pack, std::nullopt, common.threads, *progress);
     walk_options.maps = maps.get();
+  }
+  if (arguments.ledger_cost_pairs > 0) {
+    const LedgerCost cost = measure_ledger_cost(walk_options, arguments.ledger_cost_pairs, *progress);
+    progress->note(in_words(cost));
+    walk_options.ledger_cost_fraction = cost.frame_time.median;
   }
   const WalkResult result = walk(walk_options, *progress);
   if (common.json) {
@@ -149,20 +167,24 @@ void run_walk(WalkArguments arguments, const CommonOptions& common) {
 void add_walk_command(CLI::App& app, CommonOptions& common) {
   CLI::App* command = app.add_subcommand("walk", "Walk through a pack in a headset, a window or offscreen");
   command->footer(
-      "Headset: walk as you are; select (trigger) aims and, released, teleports, menu goes back to the rig's middle.\n"
+      "Headset: walk as you are. Hold select (trigger, pinch) to aim, let go to teleport where the throw lands.\n"
+      "Left stick: 1.4 m/s where you look; right stick turns; menu goes back to where you stood last, on free floor.\n"
       "A window beside it shows what the wearer sees. When the runtime goes away, the walk goes on in a window or "
       "offscreen,\n"
       "and in the headset once it is there again.\n"
-      "Window: drag to look, WASD to walk, shift to run, click on the floor to go there, F1 for the overlay, F2 for "
-      "look-ups\n"
-      "instead of the picture (in a headset too), F12 for a picture, Esc to leave.\n"
-      "Offscreen: plays the pack's tour once over its frames, on a fixed clock.\n\n"
+      "Window: drag to look, WASD to walk, shift to run, Q and E or the arrows to turn, R back to free floor, click on\n"
+      "the floor to go there, F1 for the overlay, F2 for look-ups instead of the picture (in a headset too), F12 for a\n"
+      "picture, Esc to leave.\n"
+      "Offscreen: plays the pack's tour once over its frames, on a fixed clock; with --realtime (and no --frames) the\n"
+      "tour at a walker's pace on the real clock, until it or --seconds are over.\n\n"
       "  probewalk walk house.probes                                      the first display that answers\n"
       "  probewalk walk house.probes --frames 600 --report report/        with a report of its latency\n"
       "  probewalk walk house.probes --display headset --record walk.jsonl\n"
       "  probewalk walk https://example.org/house.probes                  from a web server that has the folder\n"
       "  probewalk walk house.probes --display offscreen --path walk.jsonl --save-frames pictures/\n"
-      "A replayed path decides what every display shows; in a headset it plays like a film.");
+      "  probewalk walk house.probes --turn 45 --seated --remember        from now on so, unless told otherwise\n"
+      "A replayed path decides what every display shows; in a headset it plays like a film.\n\n" +
+      controls_help());
   auto arguments = std::make_shared<WalkArguments>();
   WalkOptions& walk_options = arguments->walk;
   command
@@ -204,6 +226,11 @@ void add_walk_command(CLI::App& app, CommonOptions& common) {
   command->add_option("--cache-limit", arguments->cache_mib, "MiB that they may take there (default: 8192)")
       ->check(CLI::Range(1ull, 1ull << 24));
   command->add_option("--report", arguments->report, "Write frames.csv, summary.json, trace.json and index.html here");
+  command->add_option("--ledger-cost", arguments->ledger_cost_pairs,
+                      "First measure, offscreen, what the ledger itself costs: this many times 16 frames with it and 16\n"
+                      "without (20 is a start); the report states it")
+      ->check(CLI::Range(4ull, 10000ull))
+      ->option_text("PAIRS");
   const std::map<std::string, ShownEyes> eyes{{"both", ShownEyes::kBoth},
                                               {"left", ShownEyes::kLeft},
                                               {"right", ShownEyes::kRight},
@@ -221,9 +248,9 @@ void add_walk_command(CLI::App& app, CommonOptions& common) {
                     "Show the overlay from the start (F1): frame times against the budget, rooms, streaming");
   CLI::Option* settle = command->add_flag("--settle", arguments->settle,
                                           "Wait for the rooms that each pose wants (default: offscreen only)");
-  command->add_flag("--realtime", arguments->realtime, "Never wait for rooms: show what is there")->excludes(settle);
-  command->add_flag("--seated", walk_options.display.seated,
-                    "Headset: the head's resting place is at standing eye height");
+  command->add_flag("--realtime", arguments->realtime, "Never wait for rooms: show what is there, when a display would")
+      ->excludes(settle);
+  add_walking_options(*command, arguments->walking);
   arguments->ev_option = command->add_option("--ev", arguments->ev, "Exposure value, instead of the pack's")
                              ->check(CLI::Range(-32.0, 32.0));
   command->add_option("--save-frames", arguments->pictures, "Write the eyes' pictures here as PNG");

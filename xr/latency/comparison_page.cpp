@@ -239,7 +239,7 @@ std::string comparison_html(std::span<const Run> runs, const Comparison& compari
       for (const std::string& sentence : pair.paid_with) html += "<li>" + html_escaped(sentence) + "</li>";
       html += "</ul></div>\n";
     }
-    html += change_svg(pair, base.name, other.name);
+    html += "<div class=\"scroll wide\">" + change_svg(pair, base.name, other.name) + "</div>\n";
     html += "<h3>Times</h3>\n" + changes_table(pair.times, base.name, other.name, "quantity");
     html += "<h3>What the wearer gets</h3>\n" + changes_table(pair.quality, base.name, other.name, "");
   }

@@ -97,6 +97,17 @@ const QuantitySummary& Summary::quantity(std::string_view name) const {
   return *found;
 }
 
+NeedToResident need_to_resident(const StreamingFacts& facts) {
+  Histogram durations;
+  for (const std::int64_t duration : facts.need_to_resident_ns) durations.add(duration);
+  NeedToResident need{.count = durations.count()};
+  for (const PercentileRank& rank : percentile_ranks()) {
+    if (rank.p == 0.5) need.p50_ns = durations.percentile(rank);
+    if (rank.p == 0.99) need.p99_ns = durations.percentile(rank);
+  }
+  return need;
+}
+
 std::size_t Ledger::first_counted() const {
   return static_cast<std::size_t>(std::min<std::uint64_t>(options_.warmup_frames, frames_.size()));
 }
@@ -115,7 +126,8 @@ Summary Ledger::summary() const {
   std::vector<std::int64_t> periods;
   double eye_scale_sum = 0.0;
   std::uint64_t scaled_frames = 0;
-  std::uint64_t budgeted = 0, within_budget = 0, levelled = 0, coarse = 0, stale_run = 0;
+  std::uint64_t budgeted = 0, within_budget = 0, levelled = 0, coarse = 0, stale_run = 0, coarse_run = 0;
+  std::int64_t coarse_since = 0;  // display time of the run's first frame
   for (std::size_t i = 0; i < frames_.size(); ++i) {
     const FrameRecord& frame = frames_[i];
     summary.bytes_uploaded += frame.bytes_uploaded;
@@ -133,9 +145,17 @@ Summary Ledger::summary() const {
       ++budgeted;
       within_budget += *q.within_budget ? 1 : 0;
     }
-    if (frame.level_shown >= 0 && frame.level_wanted >= 0) {
+    if (frame.level_wanted >= 0) {  // shown below 0: nothing at all, which is no finer than coarse
       ++levelled;
-      coarse += frame.level_shown < frame.level_wanted ? 1 : 0;
+      const bool is_coarse = frame.level_shown < frame.level_wanted;
+      coarse += is_coarse ? 1 : 0;
+      if (is_coarse && coarse_run++ == 0) coarse_since = frame.predicted_display;
+      if (coarse_run > 0) {  // what is coarse stays on the display until the next frame
+        const std::int64_t shown_until = frame.predicted_display + (is_coarse ? frame.period : 0);
+        summary.coarse_run_max_ns = std::max(summary.coarse_run_max_ns, shown_until - coarse_since);
+        summary.coarse_run_max = std::max(summary.coarse_run_max, coarse_run);
+      }
+      if (!is_coarse) coarse_run = 0;
     }
     if (frame.clock_calibrated && q.gpu_busy_ns) {
       summary.clock_error_ns = std::max(summary.clock_error_ns.value_or(0), frame.clock_deviation_ns);

@@ -12,6 +12,7 @@
 
 #include "xr/latency/frame_record.h"
 #include "xr/latency/histogram.h"
+#include "xr/latency/run_info.h"
 #include "xr/latency/worst_frames.h"
 
 namespace probewalk {
@@ -68,7 +69,9 @@ struct Summary {
   // Streaming. Bytes count the whole run, warm-up included.
   std::uint64_t bytes_uploaded = 0;
   std::uint64_t device_bytes_max = 0;
-  std::optional<double> coarse_frame_fraction;  // level_shown < level_wanted
+  std::optional<double> coarse_frame_fraction;  // level_shown < level_wanted, nothing shown included
+  std::uint64_t coarse_run_max = 0;             // the most such frames after one another
+  std::int64_t coarse_run_max_ns = 0;           // the longest time that such frames were shown without a break
   std::optional<std::int64_t> frame_thread_p99_ns;
 
   const QuantitySummary& quantity(std::string_view name) const;
@@ -89,6 +92,13 @@ class Ledger {
   LedgerOptions options_;
   std::vector<FrameRecord> frames_;
 };
+
+// How long rooms and levels took from first wanted to first drawable.
+struct NeedToResident {
+  std::uint64_t count = 0;
+  std::optional<std::int64_t> p50_ns, p99_ns;
+};
+NeedToResident need_to_resident(const StreamingFacts& facts);
 
 // What each quantity means, in the words that reports print. The order is that of every table.
 struct QuantityDefinition {

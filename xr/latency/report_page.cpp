@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <iterator>
@@ -11,6 +12,7 @@
 #include "xr/latency/report_charts.h"
 #include "xr/latency/report_style.h"
 #include "xr/latency/report_text.h"
+#include "xr/latency/streaming_section.h"
 
 namespace probewalk {
 namespace {
@@ -142,6 +144,31 @@ std::string worst_table(const Summary& summary) {
          "that grew most over its median.</p>\n";
 }
 
+std::string words_of(const SourceStatistics& source) {
+  std::string text = fmt::format("{}: {} chunks, {} more from the cache; {} requests, {} failed", source.address,
+                                 source.chunks, source.from_cache, source.requests, source.failed_requests);
+  if (source.requests > 0 && source.failed_requests > 0) {
+    text += fmt::format(" ({})", percent(static_cast<double>(source.failed_requests) / static_cast<double>(source.requests)));
+  }
+  if (source.damaged > 0) text += fmt::format(", {} answers damaged", source.damaged);
+  if (!source.last_failure.empty()) text += "; the last failure: " + source.last_failure;
+  return text;
+}
+
+// What could not be loaded when it was wanted; the first few by name.
+std::string words_of(const std::vector<LevelTrouble>& troubles) {
+  if (troubles.empty()) return {};
+  constexpr std::size_t kNamed = 5;
+  const auto lasting = std::count_if(troubles.begin(), troubles.end(), [](const auto& each) { return !each.overcome; });
+  std::string text = fmt::format("{} of {} never came after all", lasting, troubles.size());
+  for (std::size_t i = 0; i < std::min(kNamed, troubles.size()); ++i) {
+    const LevelTrouble& each = troubles[i];
+    text += fmt::format("; room {}, level {}, {} times{}: {}", each.room, each.level, each.tries,
+                        each.overcome ? ", then loaded" : "", each.reason);
+  }
+  return text + (troubles.size() > kNamed ? "; …" : "");
+}
+
 // Facts of one run that every report must state, in the order of the table.
 struct Fact {
   const char* name;
@@ -210,21 +237,13 @@ const std::vector<Fact>& facts() {
                     ? percent(*r.info.instrumentation_cost_fraction) + " of frame time, from an on/off pair"
                     : std::string("its own cost was not measured in this run");
        }},
-      {"uploaded",
-       [](const Run& r, const Summary& s) {
-         return fmt::format("{}, {} rooms loaded", in_bytes(s.bytes_uploaded), r.info.streaming.rooms_loaded);
+      {"device budget",
+       [](const Run& r, const Summary&) {
+         const std::uint64_t bytes = r.info.streaming.device_budget_bytes;
+         return bytes > 0 ? in_bytes(bytes) : std::string("none set");
        }},
-      {"device memory",
-       [](const Run& r, const Summary& s) {
-         return fmt::format("at most {} of {}", in_bytes(s.device_bytes_max),
-                            r.info.streaming.device_budget_bytes > 0 ? in_bytes(r.info.streaming.device_budget_bytes)
-                                                                     : std::string("no set budget"));
-       }},
-      {"coarse frames",
-       [](const Run&, const Summary& s) {
-         return s.coarse_frame_fraction ? percent(*s.coarse_frame_fraction) + " shown below the wanted level"
-                                        : std::string();
-       }},
+      {"web server", [](const Run& r, const Summary&) { return r.info.streaming.source ? words_of(*r.info.streaming.source) : ""; }},
+      {"failed loads", [](const Run& r, const Summary&) { return words_of(r.info.streaming.troubles); }},
   };
   return all;
 }
@@ -296,7 +315,8 @@ std::string run_section(const Run& run, const Summary& summary, const ChartScale
       "<span class=\"key\" style=\"background:var(--gpu)\"></span>GPU busy"
       "<span class=\"key\" style=\"background:var(--missed)\"></span>missed (below), cut off (above)"
       "<span class=\"key\" style=\"background:var(--discarded)\"></span>discarded</p>\n";
-  html += timeline_svg(run.ledger, summary, scale);
+  html += "<div class=\"scroll wide\">" + timeline_svg(run.ledger, summary, scale) + "</div>\n";
+  html += streaming_section(run, summary);
   html += "<h2>Histograms</h2>\n<div class=\"charts\">\n";
   for (const char* name : {"frame", "cpu_busy", "gpu_busy"}) {
     html += histogram_svg(summary.quantity(name), summary.period_ns, scale) + "\n";
@@ -333,6 +353,11 @@ std::string definitions() {
       "discarded "
       "frames.</td></tr>\n"
       "<tr><td>not rendered</td><td class=\"words\">Frames whose should_render was false.</td></tr>\n"
+      "<tr><td>coarse</td><td class=\"words\">Frames shown below the level that the wearer's room was wanted at, or "
+      "not "
+      "at all.</td></tr>\n"
+      "<tr><td>need to resident</td><td class=\"words\">From the frame that first wanted a room's level to its being "
+      "handed to the device; one value a level.</td></tr>\n"
       "<tr><td>warm-up</td><td class=\"words\">The first frames, which load and compile: counted, in frames.csv, in no "
       "statistic.</td></tr>\n</table></div>\n";
   html +=

@@ -7,10 +7,10 @@ namespace probewalk {
 inline constexpr const char* kReportStyle = R"css(
 :root { color-scheme: light dark; --paper: #fbfbf9; --ink: #1d1f21; --soft: #63676c; --rule: #dcdcd6; --card: #ffffff;
   --frame: #9aa3ad; --frame-fill: #e4e7ea; --cpu: #1f6fc4; --gpu: #d9661f; --missed: #c3262f; --discarded: #8a4fc0;
-  --warn-paper: #fff3d6; --warn-rule: #d99a00; --good: #2b7a3d; }
+  --warn-paper: #fff3d6; --warn-rule: #d99a00; --good: #2b7a3d; --fine: #b9cfc0; }
 @media (prefers-color-scheme: dark) { :root { --paper: #16181b; --ink: #e7e8ea; --soft: #a0a5ab; --rule: #34383d;
   --card: #1d2024; --frame: #7c858f; --frame-fill: #2c3137; --cpu: #6cb0f5; --gpu: #f59457; --missed: #ff6b70;
-  --discarded: #c39af0; --warn-paper: #3a2f12; --warn-rule: #d9a43a; --good: #74c788; } }
+  --discarded: #c39af0; --warn-paper: #3a2f12; --warn-rule: #d9a43a; --good: #74c788; --fine: #3c5746; } }
 * { box-sizing: border-box; }
 body { margin: 0; background: var(--paper); color: var(--ink); font: 15px/1.5 system-ui, "Segoe UI", Roboto, sans-serif; }
 main { max-width: 1180px; margin: 0 auto; padding: 28px 24px 60px; }
@@ -24,7 +24,7 @@ pre { background: var(--card); border: 1px solid var(--rule); border-radius: 6px
 .tile b { display: block; font-size: 23px; font-weight: 600; letter-spacing: -0.02em; font-variant-numeric: tabular-nums; }
 .tile b small { font-size: 14px; font-weight: 500; color: var(--soft); } .tile span { color: var(--soft); font-size: 13px; }
 .tile.bad b { color: var(--missed); } .tile.good b { color: var(--good); }
-.scroll { overflow-x: auto; }
+.scroll { overflow-x: auto; } .wide svg { min-width: 660px; }
 table { border-collapse: collapse; width: 100%; font-variant-numeric: tabular-nums; }
 th, td { padding: 5px 12px 5px 0; text-align: right; border-bottom: 1px solid var(--rule); vertical-align: top; }
 th { color: var(--soft); font-weight: 500; font-size: 13px; } th:first-child, td:first-child, td.words, th.words { text-align: left; }
@@ -44,8 +44,9 @@ svg .missed, svg .clipped { fill: var(--missed); } svg .discarded { fill: var(--
 svg .hit { fill: transparent; } svg .hit:hover { fill: var(--soft); opacity: 0.18; }
 .run + .run { border-top: 3px solid var(--rule); margin-top: 46px; }
 .headline { font-size: 17px; } ul { margin: 6px 0 10px; padding-left: 22px; } .banner ul { margin-bottom: 0; }
-.changes tr.head td { border-top: 1px solid var(--soft); } td.verdict { white-space: nowrap; font-weight: 600; color: var(--soft); }
+.changes th, .changes td { white-space: nowrap; } .changes tr.head td { border-top: 1px solid var(--soft); } td.verdict { white-space: nowrap; font-weight: 600; color: var(--soft); }
 td.verdict.better { color: var(--good); } td.verdict.worse { color: var(--missed); } td.verdict.few { font-weight: 400; font-style: italic; }
+svg .fine { fill: var(--fine); } svg .coarse { fill: var(--missed); } svg .dark { fill: var(--ink); } svg .device { fill: var(--frame-fill); }
 svg rect.change { opacity: 0.45; } svg .better { fill: var(--good); } svg .worse { fill: var(--missed); } svg .same { fill: var(--soft); }
 @media print { body { background: #fff; } .charts, svg, tr { break-inside: avoid; } }
 )css";

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "content/stream/chunk_source.h"
+
 namespace probewalk {
 
 struct MachineInfo {
@@ -26,6 +28,9 @@ struct DeviceFacts {
   bool is_software = false;
 };
 
+// How a load ended that nobody wanted any more before it came: no failure.
+inline constexpr const char* kNotNeededAnyMore = "not needed any more";
+
 // One room's chunk on its way to the device, by one loader thread. CLOCK_MONOTONIC; 0 = it did not come to that.
 struct LevelLoad {
   std::string room;  // its id
@@ -41,11 +46,22 @@ struct LevelLoad {
   std::int64_t finished_ns = 0;  // handed to the device
 };
 
+// A level that could not be loaded when it was wanted.
+struct LevelTrouble {
+  std::string room;  // its id
+  std::uint32_t level = 0;
+  std::uint64_t tries = 0;  // that failed
+  bool overcome = false;    // it came after all
+  std::string reason;       // of the last failure: the file or address, and what happened
+};
+
 struct StreamingFacts {
   std::uint64_t rooms_loaded = 0;
   std::uint64_t device_budget_bytes = 0;          // 0 = none was set
   std::vector<std::int64_t> need_to_resident_ns;  // one a room or level: first wanted to first drawable
   std::vector<LevelLoad> loads;                   // for trace.json; kept only where a report is asked for
+  std::vector<LevelTrouble> troubles;
+  std::optional<SourceStatistics> source;         // empty = the pack is a folder
 };
 
 // A display that went away, and where the walk went on.

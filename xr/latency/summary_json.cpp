@@ -50,24 +50,46 @@ Json device_json(const DeviceFacts& device) {
           {"is_software", device.is_software}};
 }
 
-Json streaming_json(const Summary& summary, const StreamingFacts& facts) {
-  Histogram need_to_resident;
-  for (const std::int64_t duration : facts.need_to_resident_ns) need_to_resident.add(duration);
-  std::optional<std::int64_t> p50, p99;
-  for (const PercentileRank& rank : percentile_ranks()) {
-    if (rank.p == 0.5) p50 = need_to_resident.percentile(rank);
-    if (rank.p == 0.99) p99 = need_to_resident.percentile(rank);
+Json source_json(const std::optional<SourceStatistics>& source) {
+  if (!source) return {};
+  return {{"address", source->address},
+          {"chunks", source->chunks},
+          {"from_cache", source->from_cache},
+          {"requests", source->requests},
+          {"failed_requests", source->failed_requests},
+          {"damaged", source->damaged},
+          {"bytes", source->bytes},
+          {"last_failure", text_or_null(source->last_failure)}};
+}
+
+Json troubles_json(const std::vector<LevelTrouble>& troubles) {
+  Json list = Json::array();
+  for (const LevelTrouble& trouble : troubles) {
+    list.push_back({{"room", trouble.room},
+                    {"level", trouble.level},
+                    {"tries", trouble.tries},
+                    {"overcome", trouble.overcome},
+                    {"reason", trouble.reason}});
   }
+  return list;
+}
+
+Json streaming_json(const Summary& summary, const StreamingFacts& facts) {
+  const NeedToResident need = need_to_resident(facts);
   return {{"bytes", summary.bytes_uploaded},
           {"rooms_loaded", facts.rooms_loaded},
           {"coarse_frame_fraction", or_null(summary.coarse_frame_fraction)},
-          {"need_to_resident_n", need_to_resident.count()},
-          {"need_to_resident_p50_ns", or_null(p50)},
-          {"need_to_resident_p99_ns", or_null(p99)},
+          {"coarse_run_max", summary.coarse_run_max},
+          {"coarse_run_max_ns", summary.coarse_run_max_ns},
+          {"need_to_resident_n", need.count},
+          {"need_to_resident_p50_ns", or_null(need.p50_ns)},
+          {"need_to_resident_p99_ns", or_null(need.p99_ns)},
           {"need_to_resident_ns", facts.need_to_resident_ns},
           {"frame_thread_p99_ns", or_null(summary.frame_thread_p99_ns)},
           {"device_bytes_max", summary.device_bytes_max},
-          {"device_budget_bytes", facts.device_budget_bytes > 0 ? Json(facts.device_budget_bytes) : Json()}};
+          {"device_budget_bytes", facts.device_budget_bytes > 0 ? Json(facts.device_budget_bytes) : Json()},
+          {"source", source_json(facts.source)},
+          {"troubles", troubles_json(facts.troubles)}};
 }
 
 Json pose_answers_json(const Summary& summary) {
@@ -119,6 +141,30 @@ void take(const Json& json, const char* key, T& value, const std::string& file) 
 Json object_in(const Json& json, const char* key) {
   const auto found = json.find(key);
   return found != json.end() && found->is_object() ? *found : Json::object();
+}
+
+void take_source_facts(const Json& streaming, StreamingFacts& facts, const std::string& file) {
+  if (const Json source = object_in(streaming, "source"); !source.empty()) {
+    SourceStatistics& read = facts.source.emplace();
+    take(source, "address", read.address, file);
+    take(source, "chunks", read.chunks, file);
+    take(source, "from_cache", read.from_cache, file);
+    take(source, "requests", read.requests, file);
+    take(source, "failed_requests", read.failed_requests, file);
+    take(source, "damaged", read.damaged, file);
+    take(source, "bytes", read.bytes, file);
+    take(source, "last_failure", read.last_failure, file);
+  }
+  const auto troubles = streaming.find("troubles");
+  if (troubles == streaming.end() || !troubles->is_array()) return;
+  for (const Json& entry : *troubles) {
+    LevelTrouble& trouble = facts.troubles.emplace_back();
+    take(entry, "room", trouble.room, file);
+    take(entry, "level", trouble.level, file);
+    take(entry, "tries", trouble.tries, file);
+    take(entry, "overcome", trouble.overcome, file);
+    take(entry, "reason", trouble.reason, file);
+  }
 }
 
 }  // namespace
@@ -191,9 +237,8 @@ SummaryHead parse_summary_json(std::string_view text, const std::string& file) {
   if (json.contains("foveation")) take(json, "foveation", info.foveation, file);
   take(json, "warmup_frames", head.options.warmup_frames, file);
   take(json, "has_deadlines", head.options.has_deadlines, file);
-  if (double cost = -1.0; json.contains("instrumentation_cost_fraction")) {
-    take(json, "instrumentation_cost_fraction", cost, file);
-    if (cost >= 0.0) info.instrumentation_cost_fraction = cost;
+  if (const auto cost = json.find("instrumentation_cost_fraction"); cost != json.end() && !cost->is_null()) {
+    take(json, "instrumentation_cost_fraction", info.instrumentation_cost_fraction.emplace(), file);
   }
   const Json machine = object_in(json, "machine");
   info.machine = {};
@@ -212,6 +257,7 @@ SummaryHead parse_summary_json(std::string_view text, const std::string& file) {
   take(streaming, "rooms_loaded", info.streaming.rooms_loaded, file);
   take(streaming, "device_budget_bytes", info.streaming.device_budget_bytes, file);
   take(streaming, "need_to_resident_ns", info.streaming.need_to_resident_ns, file);
+  take_source_facts(streaming, info.streaming, file);
   if (const auto changes = json.find("display_changes"); changes != json.end() && changes->is_array()) {
     for (const Json& entry : *changes) {
       DisplayChange change;

@@ -1,6 +1,7 @@
 #include "content/scene/procedural/glb_writer.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <limits>
 #include <map>
@@ -64,11 +65,19 @@ class Writer {
     write_header();
     write_materials();
     Json scene_nodes = Json::array();
-    for (const ModelObject& object : model_.objects) {
+    std::vector<std::vector<const ModelPlacement*>> placements(model_.objects.size());
+    for (const ModelPlacement& placement : model_.placements) placements[placement.object].push_back(&placement);
+    for (std::size_t i = 0; i < model_.objects.size(); ++i) {
+      const ModelObject& object = model_.objects[i];
       if (object.meshes.empty()) continue;
-      scene_nodes.push_back(root_["nodes"].size());
-      root_["nodes"].push_back({{"name", object.name}, {"mesh", root_["meshes"].size()}});
+      const std::size_t mesh = root_["meshes"].size();
       root_["meshes"].push_back(mesh_of(object));
+      const auto add_node = [&](Json node) {
+        scene_nodes.push_back(root_["nodes"].size());
+        root_["nodes"].push_back(std::move(node));
+      };
+      if (placements[i].empty()) add_node({{"name", object.name}, {"mesh", mesh}});
+      for (const ModelPlacement* placement : placements[i]) add_node(node_of(*placement, mesh));
     }
     write_lights(scene_nodes);
     write_rooms(scene_nodes);
@@ -148,6 +157,13 @@ class Writer {
     return {{"name", object.name}, {"primitives", primitives}};
   }
 
+  static Json node_of(const ModelPlacement& placement, std::size_t mesh) {
+    Json node = {{"name", placement.name}, {"mesh", mesh}, {"translation", json_of(placement.position_m)}};
+    const double half_rad = 0.5 * glm::radians(placement.yaw_deg);
+    if (placement.yaw_deg != 0.0) node["rotation"] = {0.0, std::sin(half_rad), 0.0, std::cos(half_rad)};
+    return node;
+  }
+
   // Buffer views are named until assemble() knows their numbers.
   template <class T>
   Json accessor(const std::string& view, const std::vector<T>& values, int component, const char* type) {
@@ -180,6 +196,7 @@ class Writer {
                            {"outerConeAngle", light.outer_cone_rad}};
           break;
       }
+      if (light.range_m > 0.0) entry["range"] = light.range_m;
       if (light.kind != ModelLight::Kind::kDirectional) node["translation"] = json_of(light.position_m);
       if (light.kind != ModelLight::Kind::kPoint) node["rotation"] = rotation_from_minus_z(light.direction);
       node["extensions"]["KHR_lights_punctual"]["light"] = lights.size();

@@ -46,6 +46,14 @@ struct ModelObject {
   std::map<MaterialId, ModelMesh> meshes;  // ordered: the file's bytes must not depend on addresses
 };
 
+// A place at which an object stands. What is placed at all is drawn at its placements only: nodes that share its mesh.
+struct ModelPlacement {
+  std::string name;
+  std::size_t object = 0;  // index into Model::objects
+  glm::dvec3 position_m{0.0};
+  double yaw_deg = 0.0;  // about y, positive: z towards x
+};
+
 struct ModelLight {
   enum class Kind { kPoint, kSpot, kDirectional };
   std::string name;
@@ -55,6 +63,7 @@ struct ModelLight {
   glm::vec3 color{1.0f};
   double intensity = 1.0;  // candela, or lux for a directional light
   double inner_cone_rad = 0.0, outer_cone_rad = 0.7;
+  double range_m = 0.0;  // how far it reaches; 0: for ever
 };
 
 struct ModelRoom {
@@ -71,6 +80,7 @@ struct Model {
   std::vector<ModelTexture> textures;
   std::vector<ModelMaterial> materials;
   std::vector<ModelObject> objects;
+  std::vector<ModelPlacement> placements;
   std::vector<ModelLight> lights;
   std::vector<ModelRoom> rooms;
   ModelSky sky;

@@ -14,6 +14,9 @@ Model make_lattice();
 Model make_grove();
 Model make_foliage();
 
+// A furnished building of that many rooms on two storeys, made of placed variants; 20 or 200.
+Model make_building(int rooms);
+
 // The thesis's experiments and figures; where things are in the schematic ones: thesis_places.h.
 Model make_holodeck();
 Model make_courtyard();

@@ -17,12 +17,9 @@ constexpr float kRoomy_m = 0.45f;           // from walls; stations are not put 
 constexpr std::size_t kFewestStations = 4;  // of a small room, where it has room for them
 constexpr float kNearestStation_m = 1.2f;
 constexpr std::size_t kMostStations = 24;   // besides the middles of rooms
-constexpr std::size_t kMostRoomStations = 64;
-
-struct Station {
-  std::int32_t local = 0;  // index into the part's places
-  WalkTree tree;
-};
+constexpr std::size_t kMostRoomStations = 1000;  // the order takes time with the cube of it
+constexpr std::size_t kFewStations = 64;  // among more, ways are searched only as far as the nearest few stations
+constexpr std::size_t kNearStations = 12;
 
 // Uphill in the distance to walls, not farther than a step or two: the middle of where one is.
 std::int32_t climb(const FloorGraph& graph, const WalkPaths& paths, std::int32_t place) {
@@ -38,31 +35,35 @@ std::int32_t climb(const FloorGraph& graph, const WalkPaths& paths, std::int32_t
   return place;
 }
 
-// Root first, then the widest place of every room, then the place farthest from all stations, until all are near.
-std::vector<Station> find_stations(const WalkGround& ground, const WalkPaths& paths, std::int32_t root,
-                                   Progress& progress) {
-  std::vector<Station> stations;
-  std::vector<float> nearest_m(ground.places.size(), HUGE_VALF);
-  const auto add = [&](std::int32_t local) {
-    if (progress.cancelled()) throw Interrupted("interrupted while planning the tour");
-    stations.push_back({local, paths.from(local)});
-    const WalkTree& tree = stations.back().tree;
-    for (std::size_t i = 0; i < nearest_m.size(); ++i) nearest_m[i] = std::min(nearest_m[i], tree.length_m[i]);
-  };
-  add(root);
-
+// Root first, then the widest place of every room, then the place farthest from all stations, until all are near:
+// indices into the part's places.
+std::vector<std::int32_t> find_stations(const WalkGround& ground, const WalkPaths& paths, std::int32_t root,
+                                        Progress& progress) {
   std::map<std::int32_t, std::int32_t> widest;  // by room
   for (const std::int32_t i : ground.places) {
     const auto [entry, fresh] = widest.try_emplace(ground.room[i], i);
     if (!fresh && ground.graph.places[i].wall_m > ground.graph.places[entry->second].wall_m) entry->second = i;
   }
+  const double area_m2 = ground.graph.area_m2(ground.places.size());
+  const float spacing_m = float(std::max(kStationSpacing_m, 0.3 * std::sqrt(area_m2)));
+
+  std::vector<std::int32_t> stations;
+  std::vector<float> nearest_m(ground.places.size(), HUGE_VALF);
+  const auto add = [&](std::int32_t local) {
+    if (progress.cancelled()) throw Interrupted("interrupted while planning the tour");
+    // Of many stations it matters only what is nearer to them than to those before.
+    SearchEnd end;
+    if (widest.size() > kFewStations) end.within_m = &nearest_m;
+    const WalkTree tree = paths.from(local, end);
+    stations.push_back(local);
+    for (std::size_t i = 0; i < nearest_m.size(); ++i) nearest_m[i] = std::min(nearest_m[i], tree.length_m[i]);
+  };
+  add(root);
   for (const auto& [room, place] : widest) {
     if (stations.size() > kMostRoomStations) break;
     if (nearest_m[paths.local(place)] > float(kPoseStep_m)) add(paths.local(place));
   }
 
-  const double area_m2 = ground.graph.area_m2(ground.places.size());
-  const float spacing_m = float(std::max(kStationSpacing_m, 0.3 * std::sqrt(area_m2)));
   for (std::size_t extra = 0; extra < kMostStations; ++extra) {
     std::int32_t farthest = -1;
     for (std::size_t i = 0; i < nearest_m.size(); ++i) {
@@ -86,18 +87,65 @@ struct WayPoint {
   bool station;
 };
 
+// What the way from each station to each other costs; infinite where no way leads. Among many, ways to stations farther
+// than the nearest few are put together from the ways between those.
+std::vector<std::vector<double>> costs_between(const WalkPaths& paths, const std::vector<std::int32_t>& stations,
+                                               Progress& progress) {
+  const std::size_t count = stations.size();
+  std::vector<std::vector<double>> cost(count, std::vector<double>(count, HUGE_VAL));
+  std::vector<bool> is_station(paths.places().size(), false);
+  for (const std::int32_t local : stations) is_station[local] = true;
+  SearchEnd end;
+  if (count > kFewStations) end = {nullptr, &is_station, kNearStations + 1};  // and the station itself
+  for (std::size_t a = 0; a < count; ++a) {
+    if (progress.cancelled()) throw Interrupted("interrupted while planning the tour");
+    const WalkTree tree = paths.from(stations[a], end);
+    for (std::size_t b = 0; b < count; ++b) cost[a][b] = double(tree.cost[stations[b]]);
+  }
+  if (count <= kFewStations) return cost;
+
+  // A way costs about the same in both directions. Where the near ones leave pieces (storeys that a stair joins), one
+  // station of each piece is searched from to the end.
+  std::vector<std::size_t> piece(count);
+  for (std::size_t a = 0; a < count; ++a) piece[a] = a;
+  const auto root = [&](std::size_t a) {
+    while (piece[a] != a) a = piece[a] = piece[piece[a]];
+    return a;
+  };
+  const auto mirror = [&](std::size_t a) {
+    for (std::size_t b = 0; b < count; ++b) cost[a][b] = cost[b][a] = std::min(cost[a][b], cost[b][a]);
+  };
+  for (std::size_t a = 0; a < count; ++a) {
+    mirror(a);
+    for (std::size_t b = 0; b < count; ++b)
+      if (cost[a][b] != HUGE_VAL) piece[std::max(root(a), root(b))] = std::min(root(a), root(b));
+  }
+  for (std::size_t a = 1; a < count; ++a) {
+    if (root(a) != a) continue;
+    if (progress.cancelled()) throw Interrupted("interrupted while planning the tour");
+    const WalkTree tree = paths.from(stations[a]);
+    for (std::size_t b = 0; b < count; ++b) cost[a][b] = std::min(cost[a][b], double(tree.cost[stations[b]]));
+    mirror(a);
+  }
+  for (std::size_t over = 0; over < count; ++over) {
+    for (std::size_t a = 0; a < count; ++a) {
+      if (cost[a][over] == HUGE_VAL) continue;
+      for (std::size_t b = 0; b < count; ++b) cost[a][b] = std::min(cost[a][b], cost[a][over] + cost[over][b]);
+    }
+  }
+  return cost;
+}
+
 // Stations in walking order from the first: nearest unvisited first, then stretches turned round while that shortens
 // the way (2-opt).
-std::vector<std::size_t> order_stations(const std::vector<Station>& stations) {
-  const auto cost = [&](std::size_t a, std::size_t b) {
-    return double(stations[a].tree.cost[stations[b].local]) + double(stations[b].tree.cost[stations[a].local]);
-  };
+std::vector<std::size_t> order_stations(const std::vector<std::vector<double>>& costs) {
+  const auto cost = [&](std::size_t a, std::size_t b) { return costs[a][b] + costs[b][a]; };
   std::vector<std::size_t> order{0};
-  std::vector<bool> visited(stations.size(), false);
+  std::vector<bool> visited(costs.size(), false);
   visited[0] = true;
   for (;;) {
     std::size_t next = 0;
-    for (std::size_t s = 1; s < stations.size(); ++s) {
+    for (std::size_t s = 1; s < costs.size(); ++s) {
       if (visited[s] || cost(order.back(), s) == HUGE_VAL) continue;
       if (next == 0 || cost(order.back(), s) < cost(order.back(), next)) next = s;
     }
@@ -121,7 +169,8 @@ std::vector<std::size_t> order_stations(const std::vector<Station>& stations) {
 }
 
 // The way from station to station: straight stretches, one point for every column crossed.
-std::vector<WayPoint> walk_stations(const WalkGround& ground, const std::vector<Station>& stations) {
+std::vector<WayPoint> walk_stations(const WalkGround& ground, const WalkPaths& paths,
+                                    const std::vector<std::int32_t>& stations, Progress& progress) {
   const FloorGraph& graph = ground.graph;
   std::vector<WayPoint> way;
   const auto add_point = [&](glm::dvec2 at, std::int32_t place, bool station) {
@@ -132,12 +181,14 @@ std::vector<WayPoint> walk_stations(const WalkGround& ground, const std::vector<
     const glm::dvec3 foot = graph.foot_m(place);
     return glm::dvec2(foot.x, foot.z);
   };
-  add_point(middle(ground.places[stations[0].local]), ground.places[stations[0].local], true);
-  const std::vector<std::size_t> order = order_stations(stations);
+  add_point(middle(ground.places[stations[0]]), ground.places[stations[0]], true);
+  const std::vector<std::size_t> order = order_stations(costs_between(paths, stations, progress));
   for (std::size_t leg = 1; leg < order.size(); ++leg) {
-    const WalkTree& tree = stations[order[leg - 1]].tree;
+    std::vector<bool> goal(ground.places.size(), false);
+    goal[stations[order[leg]]] = true;
+    const WalkTree tree = paths.from(stations[order[leg - 1]], {nullptr, &goal, 1});
     std::vector<std::int32_t> places;
-    for (std::int32_t i = stations[order[leg]].local; i >= 0; i = tree.previous[i]) places.push_back(ground.places[i]);
+    for (std::int32_t i = stations[order[leg]]; i >= 0; i = tree.previous[i]) places.push_back(ground.places[i]);
     std::reverse(places.begin(), places.end());
     const std::vector<std::int32_t> corners = straightened(graph, places);
     for (std::size_t c = 1; c < corners.size(); ++c) {
@@ -199,7 +250,8 @@ double glance_rad(double from_station_m) {
 std::vector<Pose> find_tour(const WalkGround& ground, const Pose& start, Progress& progress) {
   const WalkPaths paths(ground.graph, ground.places);
   const std::int32_t root = paths.local(nearest_place(ground.graph, ground.places, start.position_m));
-  const std::vector<WayPoint> way = walk_stations(ground, find_stations(ground, paths, root, progress));
+  const std::vector<WayPoint> way =
+      walk_stations(ground, paths, find_stations(ground, paths, root, progress), progress);
   const std::vector<double> along_m = distances_along(way);
   const int count = int(std::round(along_m.back() / kPoseStep_m)) + 1;
   if (count < 8) return look_around(start);

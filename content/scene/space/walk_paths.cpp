@@ -25,7 +25,7 @@ WalkPaths::WalkPaths(const FloorGraph& graph, const std::vector<std::int32_t>& p
   for (std::size_t i = 0; i < places.size(); ++i) local_[places[i]] = std::int32_t(i);
 }
 
-WalkTree WalkPaths::from(std::int32_t local_root) const {
+WalkTree WalkPaths::from(std::int32_t local_root, const SearchEnd& end) const {
   struct Front {
     float cost;
     std::int32_t local;
@@ -38,12 +38,15 @@ WalkTree WalkPaths::from(std::int32_t local_root) const {
   std::priority_queue<Front, std::vector<Front>, std::greater<>> queue;
   tree.cost[local_root] = tree.length_m[local_root] = 0.0f;
   queue.push({0.0f, local_root});
+  std::size_t goals_reached = 0;
   const float straight_m = float(graph_.cell_m);
   const float diagonal_m = straight_m * std::sqrt(2.0f);
   while (!queue.empty()) {
     const Front front = queue.top();
     queue.pop();
     if (front.cost > tree.cost[front.local]) continue;
+    if (end.goals && (*end.goals)[front.local] && ++goals_reached >= end.goal_count) break;
+    if (end.within_m && tree.length_m[front.local] >= (*end.within_m)[front.local]) continue;
     const std::int32_t place = places_[front.local];
     for (int k = 0; k < 8; ++k) {
       const std::int32_t next = k < 4 ? graph_.places[place].link[k] : graph_.diagonal(place, k - 4);

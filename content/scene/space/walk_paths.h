@@ -1,6 +1,8 @@
 // Ways through one part of the floor: Dijkstra that keeps away from walls, and straight lines on the grid.
 #pragma once
 
+#include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -15,6 +17,14 @@ struct WalkTree {
   std::vector<std::int32_t> previous;   // towards the root, index into the part's places; -1 at the root
 };
 
+// Where a search may end before all places are reached.
+struct SearchEnd {
+  // Both by place of the part:
+  const std::vector<float>* within_m = nullptr;  // no way goes on from where it is this long already
+  const std::vector<bool>* goals = nullptr;      // ends when `goal_count` of these are reached
+  std::size_t goal_count = SIZE_MAX;
+};
+
 class WalkPaths {
  public:
   // `places` ascending, of one connected part; both must outlive this object.
@@ -24,7 +34,7 @@ class WalkPaths {
   const std::vector<std::int32_t>& places() const { return places_; }
   // Index into places() of a place of the graph, or -1.
   std::int32_t local(std::int32_t place) const { return local_[place]; }
-  WalkTree from(std::int32_t local_root) const;
+  WalkTree from(std::int32_t local_root, const SearchEnd& end = {}) const;
 
  private:
   const FloorGraph& graph_;

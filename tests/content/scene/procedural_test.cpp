@@ -52,11 +52,14 @@ struct Glb {
     const Json& view = root["bufferViews"][accessor["bufferView"].get<std::size_t>()];
     return view["byteOffset"].get<std::size_t>() + accessor["byteOffset"].get<std::size_t>();
   }
+  // Of every node: a mesh that stands in many places counts as often.
   std::size_t triangles() const {
     std::size_t count = 0;
-    for (const Json& mesh : root["meshes"])
-      for (const Json& primitive : mesh["primitives"])
+    for (const Json& node : root["nodes"]) {
+      if (!node.contains("mesh")) continue;
+      for (const Json& primitive : root["meshes"][node["mesh"].get<std::size_t>()]["primitives"])
         count += root["accessors"][primitive["indices"].get<std::size_t>()]["count"].get<std::size_t>() / 3;
+    }
     return count;
   }
   // Room boxes by name: lower x, y, z, upper x, y, z.
@@ -255,6 +258,79 @@ TEST(ProceduralHouse, HasEveryKindOfLight) {
     kinds.insert(light["type"]);
   EXPECT_EQ(kinds, (std::set<std::string>{"directional", "point", "spot"}));
   EXPECT_TRUE(glb.root["scenes"][0]["extras"].contains("probewalk_sky"));
+}
+
+class ProceduralBuilding : public testing::TestWithParam<int> {};
+
+TEST_P(ProceduralBuilding, IsWalkedThroughAllItsRoomsInOneTour) {
+  const std::string name = "building-" + std::to_string(GetParam());
+  const std::size_t count = static_cast<std::size_t>(GetParam());
+  const Scene building = loaded_scene(name);
+  ASSERT_EQ(building.rooms.size(), count);
+  const RayScene rays(building);
+  SilentProgress progress;
+  const Space space = find_space(building, rays, {}, progress);
+  ASSERT_EQ(space.rooms.size(), count);
+
+  // Doorways join every room with every other.
+  std::vector<std::size_t> joined(count);
+  for (std::size_t r = 0; r < count; ++r) joined[r] = r;
+  const auto root = [&](std::size_t r) {
+    while (joined[r] != r) r = joined[r];
+    return r;
+  };
+  std::size_t joins = 0;
+  for (const Portal& portal : space.portals) {
+    const std::size_t a = root(std::size_t(portal.room_a)), b = root(std::size_t(portal.room_b));
+    if (a != b) joined[a] = b, ++joins;
+  }
+  EXPECT_EQ(joins, count - 1);
+
+  std::vector<double> floor_m2(count, 0.0);
+  for (const FloorNode& node : space.floor.nodes) floor_m2[node.room] += space.floor.cell_m * space.floor.cell_m;
+  std::set<std::size_t> toured;
+  double length_m = 0.0;
+  for (std::size_t i = 0; i < space.tour.size(); ++i) {
+    const std::int32_t node = space.floor.find(space.tour[i].position_m);
+    ASSERT_GE(node, 0) << "pose " << i << " has no floor";
+    toured.insert(space.floor.nodes[std::size_t(node)].room);
+    if (i > 0) length_m += glm::distance(space.tour[i].position_m, space.tour[i - 1].position_m);
+  }
+  EXPECT_EQ(toured.size(), count);
+  EXPECT_LT(length_m, 15.0 * double(count)) << "from room to room, not to and fro";
+  for (std::size_t r = 0; r < count; ++r) {
+    const Bounds& air = space.rooms[r].bounds;
+    const double area_m2 = (air.upper_m.x - air.lower_m.x) * (air.upper_m.z - air.lower_m.z);
+    EXPECT_GT(floor_m2[r], 0.35 * area_m2) << space.rooms[r].name;
+  }
+}
+INSTANTIATE_TEST_SUITE_P(Procedural, ProceduralBuilding, testing::Values(20, 200));
+
+TEST(ProceduralBuildings, StaysSmallBecauseItsNodesShareMeshes) {
+  const Glb& glb = scene("building-200");
+  EXPECT_LT(glb.bytes.size(), 12u << 20);
+  EXPECT_GT(glb.root["nodes"].size(), 4 * glb.root["meshes"].size());
+  EXPECT_LT(glb.triangles(), 4'000'000u);
+}
+
+TEST(ProceduralBuildings, NoRayPassesItsShell) {
+  const Scene building = loaded_scene("building-20");
+  const RayScene rays(building);
+  for (const auto& [name, box] : scene("building-20").rooms()) {
+    if (name == "Terrace" || name == "Stairwell") continue;
+    const glm::vec3 lower(box[0], box[1], box[2]), upper(box[3], box[4], box[5]), middle = 0.5f * (lower + upper);
+    for (int step = 0; step <= 400; ++step) {
+      const float t = static_cast<float>(step) / 400.0f;
+      for (const float x : {lower.x, upper.x}) {
+        for (const float y : {lower.y, upper.y})
+          EXPECT_TRUE(rays.closest(middle, glm::vec3(x, y, glm::mix(lower.z, upper.z, t)) - middle).hit)
+              << name << ' ' << t;
+        for (const float z : {lower.z, upper.z})
+          EXPECT_TRUE(rays.closest(middle, glm::vec3(x, glm::mix(lower.y, upper.y, t), z) - middle).hit)
+              << name << ' ' << t;
+      }
+    }
+  }
 }
 
 TEST(ProceduralScenes, BoxRoomIsSmall) {

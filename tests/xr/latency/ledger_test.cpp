@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <tuple>
+
 #include "xr/latency/synthetic_run.h"
 
 namespace probewalk {
@@ -68,6 +70,37 @@ TEST(Ledger, WarmUpIsCountedAndLeftOut) {
   EXPECT_EQ(short_run.warmup_frames, 5u);
   EXPECT_EQ(short_run.frames, 0u);
   EXPECT_FALSE(short_run.within_budget_fraction.has_value());
+}
+
+TEST(Ledger, KnowsTheLongestTimeAtACoarseLevel) {
+  // Coarse: 3 frames, a break, 2 frames of which the second is shown for five periods, one at the end.
+  Ledger ledger;
+  const bool coarse[] = {false, true, true, true, false, true, true, false, false, true};
+  std::int64_t display = 1'000 * kPeriod;
+  for (std::size_t i = 0; i < std::size(coarse); ++i) {
+    FrameRecord frame = synthetic_frame(i);
+    frame.predicted_display = display;
+    frame.level_wanted = 1, frame.level_shown = coarse[i] ? 0 : 1;
+    ledger.add(frame);
+    display += (i == 6 ? 5 : 1) * kPeriod;
+  }
+  const Summary summary = ledger.summary();
+  EXPECT_EQ(summary.coarse_frame_fraction, 0.6);
+  EXPECT_EQ(summary.coarse_run_max, 3u);
+  EXPECT_EQ(summary.coarse_run_max_ns, 6 * kPeriod);
+
+  Ledger to_the_end;  // a run that the walk's end cuts off counts, its last frame with its own refresh
+  for (std::size_t i = 0; i < 4; ++i) {
+    FrameRecord frame = synthetic_frame(i);
+    frame.predicted_display = static_cast<std::int64_t>(100 + i) * kPeriod;
+    frame.level_wanted = 1, frame.level_shown = i < 2 ? 1 : 0;
+    to_the_end.add(frame);
+  }
+  EXPECT_EQ(to_the_end.summary().coarse_run_max, 2u);
+  EXPECT_EQ(to_the_end.summary().coarse_run_max_ns, 2 * kPeriod);
+
+  EXPECT_EQ(regular_run(20).summary().coarse_run_max, 0u);
+  EXPECT_EQ(regular_run(20).summary().coarse_run_max_ns, 0);
 }
 
 TEST(Ledger, CountsMissedRefreshesFromPredictedDisplayTimes) {
@@ -153,6 +186,53 @@ TEST(Ledger, CountsWhatTheRuntimeAnsweredAboutPosesAndTakesTheHorizonOfThePoseUs
   EXPECT_EQ(summary.early_pose_frames, 10u);
   // Shown 25 ms after the wait ended, located half a millisecond after it.
   expect_all(summary, "prediction_horizon", 10, 24.5 * kMs);
+}
+
+TEST(Ledger, CoarseFramesAreThoseBelowTheLevelWantedOrWithNothingToShow) {
+  Ledger ledger;
+  const std::pair<int, int> shown_and_wanted[] = {{1, 1}, {2, 1}, {0, 1}, {-1, 0}, {-1, -1}, {1, -1}};
+  for (std::size_t i = 0; i < std::size(shown_and_wanted); ++i) {
+    FrameRecord frame = synthetic_frame(i);
+    std::tie(frame.level_shown, frame.level_wanted) = shown_and_wanted[i];
+    ledger.add(frame);
+  }
+  EXPECT_DOUBLE_EQ(*ledger.summary().coarse_frame_fraction, 2.0 / 4.0);
+}
+
+TEST(Ledger, MissedRefreshesAreTheRoundedAdvanceLessOne) {
+  // Every advance from under one period to beyond four, by hand: none below 1.5, then the nearest whole number less
+  // one.
+  for (int tenths = 5; tenths <= 44; ++tenths) {
+    FrameRecord first = synthetic_frame(0), next = synthetic_frame(1);
+    next.predicted_display = first.predicted_display + tenths * (kPeriod / 10);
+    const std::uint32_t expected = tenths < 15 ? 0 : static_cast<std::uint32_t>((tenths + 5) / 10 - 1);
+    EXPECT_EQ(derive(next, &first, true).missed, expected) << tenths << " tenths of a period";
+    EXPECT_EQ(derive(next, &first, false).missed, 0u);
+    EXPECT_EQ(derive(next, nullptr, true).missed, 0u);
+  }
+}
+
+TEST(Ledger, WhatDidNotHappenHasNoLength) {
+  FrameRecord frame = synthetic_frame(1);
+  const FrameRecord before = synthetic_frame(0);
+  frame.should_render = false;
+  FrameQuantities q = derive(frame, &before, true);
+  EXPECT_FALSE(q.cpu_busy_ns || q.gpu_busy_ns || q.deadline_margin_ns || q.within_budget);
+  EXPECT_EQ(q.frame_ns, kPeriod);
+  EXPECT_EQ(q.cpu_wait_ns, 2 * kMs);
+
+  frame = synthetic_frame(1);
+  frame.blocked_ns = 9 * kMs;  // more than there was: a measurement's doubt, no negative work
+  EXPECT_EQ(derive(frame, &before, true).cpu_busy_ns, 0);
+  frame.gpu = frame.gpu_trace = {};
+  frame.locate_late = {};
+  q = derive(frame, nullptr, true);
+  EXPECT_FALSE(q.frame_ns || q.gpu_busy_ns || q.gpu_trace_ns || q.prediction_horizon_ns || q.deadline_margin_ns);
+  EXPECT_FALSE(q.pose_error_mm || q.pose_error_deg);
+
+  frame = synthetic_frame(1);
+  frame.gpu.end += 9 * kMs;  // a millisecond too late
+  EXPECT_EQ(derive(frame, &before, true).deadline_margin_ns, -1 * kMs);
 }
 
 TEST(Ledger, KeepsPoseErrorsInTheirOwnUnits) {

@@ -95,9 +95,9 @@ TEST_F(RunFiles, SummaryHasEveryKeyOfTheContract) {
       EXPECT_TRUE(summary["percentiles"][quantity].contains(key)) << quantity << " " << key;
     }
   }
-  for (const char* key :
-       {"bytes", "rooms_loaded", "coarse_frame_fraction", "need_to_resident_p50_ns", "need_to_resident_p99_ns",
-        "frame_thread_p99_ns", "device_bytes_max", "device_budget_bytes"}) {
+  for (const char* key : {"bytes", "rooms_loaded", "coarse_frame_fraction", "coarse_run_max", "coarse_run_max_ns",
+                          "need_to_resident_p50_ns", "need_to_resident_p99_ns", "frame_thread_p99_ns",
+                          "device_bytes_max", "device_budget_bytes"}) {
     EXPECT_TRUE(summary["streaming"].contains(key)) << key;
   }
   EXPECT_EQ(summary["frames"], 280);

@@ -1,0 +1,78 @@
+#include "xr/latency/streaming_section.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "xr/latency/synthetic_run.h"
+
+namespace probewalk {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+// Level 0 of 1 in frames [first, last); nothing at all in the first of them.
+probewalk::Run coarse_between(std::size_t first, std::size_t last, std::uint64_t warmup = 0) {
+  probewalk::Run run{"run", {}, Ledger(LedgerOptions{.warmup_frames = warmup})};
+  for (std::size_t i = 0; i < 100; ++i) {
+    FrameRecord frame = synthetic_frame(i);
+    if (i >= first && i < last) frame.level_shown = i == first ? -1 : 0;
+    if (i == 2) frame.level_shown = 0;
+    frame.device_bytes = 3 << 20;
+    run.ledger.add(frame);
+  }
+  return run;
+}
+
+std::string section(const probewalk::Run& run) {
+  return streaming_section(run, run.ledger.summary());
+}
+
+TEST(StreamingSection, FindsTheLongestCoarseRun) {
+  const CoarseRun longest = longest_coarse_run(coarse_between(40, 47).ledger);
+  EXPECT_EQ(longest.frames, 7u);
+  EXPECT_EQ(longest.first, 40u);
+  EXPECT_EQ(longest.length_ns, 7 * kPeriod);
+  EXPECT_EQ(longest_coarse_run(coarse_between(0, 0).ledger).frames, 1u);
+  EXPECT_EQ(longest_coarse_run(coarse_between(5, 20, 30).ledger).frames, 0u) << "warm-up is left out";
+  EXPECT_EQ(longest_coarse_run(coarse_between(90, 100).ledger).length_ns, 9 * kPeriod) << "no frame after the last";
+  EXPECT_EQ(longest_coarse_run(Ledger{}).frames, 0u);
+}
+
+TEST(StreamingSection, TellsSharesTimesBytesAndBudget) {
+  auto run = coarse_between(40, 47);
+  run.info.streaming.need_to_resident_ns = {5 * kMs, 90 * kMs, 6 * kMs};
+  run.info.streaming.device_budget_bytes = 2 << 20;
+  EXPECT_THAT(section(run),
+              AllOf(HasSubstr("8.0 %"), HasSubstr("70.0 ms, from frame 40"), HasSubstr("(n = 3)"),
+                    HasSubstr("p99 needs 100 levels"), HasSubstr("of a budget of 2.0 MiB"), HasSubstr("class=\"dark\""),
+                    HasSubstr("class=\"coarse\""), Not(HasSubstr("could be loaded"))));
+}
+
+TEST(StreamingSection, NamesWhatCouldNotBeLoadedAndNotWhatNobodyWanted) {
+  auto run = coarse_between(40, 47);
+  LevelLoad load;
+  load.room = "a<b";
+  load.level = 2;
+  load.failure = "chunk is damaged";
+  run.info.streaming.loads = {load, load, {}};
+  load.room = "hall";
+  load.failure = kNotNeededAnyMore;
+  run.info.streaming.loads.push_back(load);
+  EXPECT_THAT(section(run),
+              AllOf(HasSubstr("Not everything could be loaded"),
+                    HasSubstr("room a&lt;b, level 2: chunk is damaged (2 times)"), Not(HasSubstr("hall"))));
+}
+
+TEST(StreamingSection, IsNoneWhereNothingIsStreamed) {
+  probewalk::Run run{"run", {}, Ledger{}};
+  EXPECT_EQ(section(run), "");
+  FrameRecord frame = synthetic_frame(0);
+  frame.level_shown = frame.level_wanted = -1;
+  run.ledger.add(frame);
+  EXPECT_EQ(section(run), "");
+}
+
+}  // namespace
+}  // namespace probewalk

@@ -1,0 +1,83 @@
+#!/usr/bin/env bash
+# What tools/soak does, on the platform itself. usage: soak.sh PROBEWALK MINUTES KILLS DIR PACK [WALK OPTION…]
+set -uo pipefail
+probewalk=$1 minutes=$2 kills=$3 out=$4; shift 4
+cd "$out" || exit 125
+rm -rf walk.log monado.log openxr.txt report
+fail() { echo "probewalk: $1" >&2; exit 125; }
+layers=/usr/share/openxr/1/api_layers/explicit.d
+ls $layers/*core_validation* >/dev/null 2>&1 || fail "install openxr-layer-corevalidation"
+manifest=/usr/share/openxr/1/openxr_monado.json
+[ -r $manifest ] || fail "install libopenxr1-monado and monado-service"
+
+# The directory's name is short: a socket's path may have 107 characters.
+export XDG_RUNTIME_DIR=$(mktemp -d /tmp/pwxr.XXXXXX) XR_RUNTIME_JSON=$manifest
+service='' walk=''
+stop() {
+  for process in $walk $service; do kill "$process" 2>/dev/null; done
+  rm -rf "$XDG_RUNTIME_DIR"
+}
+trap stop EXIT
+trap 'exit 130' INT TERM HUP
+
+start_service() {
+  rm -f "$XDG_RUNTIME_DIR/monado_comp_ipc"
+  XRT_COMPOSITOR_NULL=1 SIMULATED_ENABLE=1 SIMULATED_LEFT=simple SIMULATED_RIGHT=simple XRT_NO_STDIN=1 \
+    setpriv --pdeathsig KILL monado-service >>monado.log 2>&1 </dev/null &
+  service=$!
+  for _ in $(seq 200); do
+    grep -q " 00010000 .* $XDG_RUNTIME_DIR/monado_comp_ipc\$" /proc/net/unix && return
+    sleep 0.1
+  done
+  fail "the Monado service did not answer within 20 s; see $out/monado.log"
+}
+said() { grep -c "$1" walk.log; }
+# Waits for the walk to say $1 for the $2nd time.
+await() {
+  for _ in $(seq 600); do
+    [ "$(said "$1")" -ge "$2" ] && return
+    kill -0 "$walk" 2>/dev/null || return 1
+    sleep 0.1
+  done
+  return 1
+}
+
+start_service
+unset DISPLAY WAYLAND_DISPLAY
+# To its standard output: a file of its own the layer begins anew with each instance.
+XR_ENABLE_API_LAYERS=XR_APILAYER_LUNARG_core_validation XR_CORE_VALIDATION_EXPORT_TYPE=text \
+  "$probewalk" walk "$@" --display headset --validate --report report >openxr.txt 2>walk.log &
+walk=$!
+faults=0
+fault() { echo "FAULT: $1"; faults=$((faults + 1)); }
+
+begun=$SECONDS ends=$((SECONDS + minutes * 60))
+await FOCUSED 1 || fault "the walk did not begin"
+for ((k = 1; k <= kills; ++k)); do
+  at=$((begun + minutes * 60 * k / (kills + 1)))
+  while [ $SECONDS -lt $at ] && kill -0 $walk 2>/dev/null; do sleep 0.2; done
+  kill -KILL $service; wait $service 2>/dev/null
+  await 'goes on: \(offscreen\|window\)' $k || fault "kill $k: the walk did not go on without its headset"
+  start_service
+  await 'goes on: headset' $k && await FOCUSED $((k + 1)) || fault "kill $k: the headset did not come back"
+done
+while [ $SECONDS -lt $ends ] && kill -0 $walk 2>/dev/null; do sleep 0.2; done
+kill -0 $walk 2>/dev/null || fault "the walk ended by itself"
+kill -INT $walk; wait $walk; code=$?
+walk=''
+kill $service; wait $service 2>/dev/null
+service=''
+
+[ $code = 5 ] || fault "the walk ended with exit status $code instead of 5 (interrupted)"
+vulkan=$(said 'Vulkan validation:')
+openxr=$(grep -c 'VALID_ERROR\|VALID_WARNING' openxr.txt)
+[ "$vulkan" = 0 ] || fault "the Vulkan validation layer had $vulkan messages; see $out/walk.log"
+[ "$openxr" = 0 ] || fault "the OpenXR validation layer had $openxr findings; see $out/openxr.txt"
+# A runtime that goes away may be warned of; nothing else.
+other=$(grep 'warning:\|error:' walk.log | grep -v 'the OpenXR runtime went away\|Vulkan validation' | sort | uniq -c)
+[ -z "$other" ] || fault "the walk complained: $other"
+frames=$(($(wc -l <report/frames.csv) - 1))
+echo "$minutes min, $frames frames; Vulkan validation messages $vulkan, OpenXR findings $openxr;" \
+  "killed $kills times, gone on without headset $(said 'goes on: \(offscreen\|window\)')," \
+  "back in it $(said 'goes on: headset'); faults $faults"
+[ $faults = 0 ]
