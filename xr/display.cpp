@@ -24,12 +24,6 @@ VkExtent2D eye_size_or_default(const DisplayOptions& options) {
   return options.eye_size.width > 0 ? options.eye_size : kDefaultEyeSize;
 }
 
-LocomotionOptions locomotion_of(const DisplayOptions& options, bool in_headset) {
-  LocomotionOptions locomotion = options.locomotion;
-  locomotion.vignette = options.vignette.value_or(in_headset);
-  return locomotion;
-}
-
 // The runtime's hooks, with what a mirror needs besides.
 DeviceHooks with_window(DeviceHooks hooks, const DeviceHooks& window) {
   const auto append = [](std::vector<std::string>& to, const std::vector<std::string>& more) {
@@ -43,7 +37,7 @@ DeviceHooks with_window(DeviceHooks hooks, const DeviceHooks& window) {
 
 // Device, source and mirror for a runtime; without a window also where a desktop or a device cannot mirror.
 void open_mirrored(Display& display, const DisplayOptions& options, const FloorMap& floor, const Pose& start) {
-  const HeadsetOptions headset{options.eye_size, options.seated, locomotion_of(options, true)};
+  const HeadsetOptions headset{options.eye_size, options.seated, options.locomotion};
   const ShownEyes shown = options.window_eyes.value_or(ShownEyes::kLeft);
   if (shown != ShownEyes::kNone) {
     try {
@@ -71,7 +65,7 @@ void open_mirrored(Display& display, const DisplayOptions& options, const FloorM
 Display open_window(const DisplayOptions& options, const FloorMap& floor, const Pose& start) {
   ShownEyes shown = options.window_eyes.value_or(ShownEyes::kBoth);
   if (shown == ShownEyes::kNone) shown = ShownEyes::kBoth;  // without a mirror, not without a picture
-  const WindowOptions window{eye_size_or_default(options), shown, options.eyes, locomotion_of(options, false)};
+  const WindowOptions window{eye_size_or_default(options), shown, options.eyes, options.locomotion};
   Display display;
   display.window = std::make_unique<Window>("Probewalk", window_size(window));
   display.device = std::make_unique<Device>(display.window->device_hooks(), options.device);

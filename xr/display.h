@@ -29,7 +29,6 @@ struct DisplayOptions {
   bool seated = false;
   bool offscreen_in_real_time = false;  // at the pace of a display, not on a fixed clock
   LocomotionOptions locomotion;
-  std::optional<bool> vignette;  // empty = in a headset, not in a window
   EyeGeometry eyes;  // window and offscreen, in the viewer's metres; a headset has its own
   DeviceOptions device;
 };

@@ -50,8 +50,6 @@ WalkSettings parse(const std::string& text) {
         throw BadInput(fmt::format("\"turn\" is none of \"{}\"", fmt::join(names, "\", \"")));
       }
       settings.turn = value.get<std::string>();
-    } else if (key == "vignette") {
-      settings.vignette = yes_or_no(value, key);
     } else if (key == "world_scale") {
       settings.world_scale = number(value, key, kWorldScaleMin, kWorldScaleMax);
     } else if (key == "seated") {
@@ -75,7 +73,6 @@ const std::vector<std::string>& turn_names() {
 WalkSettings over(const WalkSettings& first, const WalkSettings& second) {
   WalkSettings settings = first;
   if (!settings.turn) settings.turn = second.turn;
-  if (!settings.vignette) settings.vignette = second.vignette;
   if (!settings.world_scale) settings.world_scale = second.world_scale;
   if (!settings.seated) settings.seated = second.seated;
   if (!settings.eye_height_m) settings.eye_height_m = second.eye_height_m;
@@ -92,7 +89,6 @@ void apply(const WalkSettings& settings, DisplayOptions& options) {
     locomotion.turn = TurnStyle::kSnap;
     locomotion.snap_rad = (settings.turn == "45" ? 45.0 : 30.0) * std::numbers::pi / 180.0;
   }
-  if (settings.vignette) options.vignette = *settings.vignette;
   if (settings.world_scale) locomotion.world_scale = *settings.world_scale;
   if (settings.seated) options.seated = *settings.seated;
   if (settings.eye_height_m) locomotion.eye_height_m = *settings.eye_height_m;
@@ -101,7 +97,6 @@ void apply(const WalkSettings& settings, DisplayOptions& options) {
 std::string in_words(const WalkSettings& settings) {
   std::vector<std::string> words;
   if (settings.turn) words.push_back("turn " + *settings.turn);
-  if (settings.vignette) words.push_back(*settings.vignette ? "vignette on" : "vignette off");
   if (settings.world_scale) words.push_back(fmt::format("world scale {}", *settings.world_scale));
   if (settings.seated) words.push_back(*settings.seated ? "seated" : "standing");
   if (settings.eye_height_m) words.push_back(fmt::format("eye height {} m", *settings.eye_height_m));
@@ -137,7 +132,6 @@ void write_walk_settings(const fs::path& file, const WalkSettings& settings) {
   if (file.empty()) throw BadInput("settings have no place: set XDG_CONFIG_HOME or HOME to an absolute folder");
   json root = json::object();
   if (settings.turn) root["turn"] = *settings.turn;
-  if (settings.vignette) root["vignette"] = *settings.vignette;
   if (settings.world_scale) root["world_scale"] = *settings.world_scale;
   if (settings.seated) root["seated"] = *settings.seated;
   if (settings.eye_height_m) root["eye_height_m"] = *settings.eye_height_m;

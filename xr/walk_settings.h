@@ -1,4 +1,4 @@
-// How a person likes to walk, from one walk to the next: turns, vignette, scale, seat. A small JSON file of this
+// How a person likes to walk, from one walk to the next: turns, scale, seat. A small JSON file of this
 // user's; what the command line says goes over it, and it changes only when the user says so.
 #pragma once
 
@@ -14,7 +14,6 @@ namespace probewalk {
 // Empty = not said.
 struct WalkSettings {
   std::optional<std::string> turn;  // a name of turn_names()
-  std::optional<bool> vignette;
   std::optional<double> world_scale;  // kWorldScaleMin to kWorldScaleMax
   std::optional<bool> seated;
   std::optional<double> eye_height_m;  // kEyeHeightMin_m to kEyeHeightMax_m

@@ -25,7 +25,6 @@ fs::path fresh_file(const std::string& name) {
 WalkSettings all_said() {
   WalkSettings settings;
   settings.turn = "45";
-  settings.vignette = false;
   settings.world_scale = 1.5;
   settings.seated = true;
   settings.eye_height_m = 1.2;
@@ -77,13 +76,12 @@ TEST(WalkSettings, GoOverEachOtherOneByOne) {
   EXPECT_EQ(both.turn, "smooth");
   EXPECT_EQ(both.world_scale, 1.5);
   EXPECT_EQ(over(WalkSettings{}, all_said()), all_said());
-  EXPECT_EQ(in_words(both), "turn smooth, vignette off, world scale 1.5, seated, eye height 1.2 m");
+  EXPECT_EQ(in_words(both), "turn smooth, world scale 1.5, seated, eye height 1.2 m");
 
   DisplayOptions options;
   apply(all_said(), options);
   EXPECT_EQ(options.locomotion.turn, TurnStyle::kSnap);
   EXPECT_NEAR(options.locomotion.snap_rad, std::numbers::pi / 4, 1e-12);
-  EXPECT_EQ(options.vignette, false);
   EXPECT_EQ(options.locomotion.world_scale, 1.5);
   EXPECT_TRUE(options.seated);
   EXPECT_EQ(options.locomotion.eye_height_m, 1.2);
