@@ -114,8 +114,10 @@ void WalkRooms::update(const ViewPose& head, std::int64_t display_ns, FrameRecor
 
   const ResidencyDecision& decision = streamer_.decision();
   const int shown = store_.level_shown(decision.room);
-  // Nothing to show is black at once; what arrives comes up gently.
-  darkness_ = shown < 0 ? 1.0 : std::max(0.0, darkness_ - dt_s / kFadeIn_s);
+  // Nothing to show is black at once; what arrives comes up gently. A room without probes of its own is shown by those of
+  // the rooms beside it.
+  const bool has_probes = pack_.manifest().rooms[decision.room].probe_count > 0;
+  darkness_ = has_probes && shown < 0 ? 1.0 : std::max(0.0, darkness_ - dt_s / kFadeIn_s);
   record.room = static_cast<std::int32_t>(decision.room);
   record.level_shown = shown;
   record.level_wanted = wanted_level(decision, decision.room);

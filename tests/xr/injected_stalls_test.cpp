@@ -192,10 +192,10 @@ class StallingSource final : public FrameSource {
   VkExtent2D view_extent() const override { return whole_->view_extent(); }
   std::uint32_t view_count() const override { return whole_->view_count(); }
   VkFormat color_format() const override { return whole_->color_format(); }
-  FrameTarget acquire() override {
+  FrameTarget acquire(VkExtent2D drawn) override {
     injector.phase = Phase::kAcquired;
     injector.stall("blocked");
-    return whole_->acquire();
+    return whole_->acquire(drawn);
   }
   void end(const FrameTiming& timing, const std::vector<ViewPose>& views) override {
     injector.stall("end");

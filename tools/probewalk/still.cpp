@@ -45,7 +45,7 @@ struct StillDrawer::Impl {
               {.frame_slots = kFrameSlots}),
         baselines(choice.needs_maps() && maps != nullptr ? std::make_unique<BaselineStore>(device, *maps, choice) : nullptr),
         picture(device, {kFormat, extent, views, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT}),
-        renderer(device, store, {{extent, views, true, samples, foveation, {choice, baselines.get()}}, kFormat}),
+        renderer(device, store, {{extent, views, true, samples, foveation, false, {choice, baselines.get()}}, kFormat}),
         source(pack.path()),
         streamer(
             pack.manifest(), source,
