@@ -13,6 +13,7 @@
 
 #include "render/buffer.h"
 #include "render/check.h"
+#include "render/commands.h"
 #include "render/depth_pass.h"
 #include "render/resolve.h"
 #include "render/view.h"
@@ -32,14 +33,8 @@ constexpr std::size_t kTimesKept = 64;
 struct FrameSlot {
   explicit FrameSlot(const Device& owner)
       : device(owner.handle()), constants(owner, sizeof(FrameConstants), BufferMemory::kShared), timer(owner, kPasses) {
-    VkCommandPoolCreateInfo pool_info{VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO};
-    pool_info.queueFamilyIndex = owner.queue_family();
-    check(vkCreateCommandPool(device, &pool_info, nullptr, &pool), "vkCreateCommandPool");
-    VkCommandBufferAllocateInfo allocate{VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO};
-    allocate.commandPool = pool;
-    allocate.level = VK_COMMAND_BUFFER_LEVEL_PRIMARY;
-    allocate.commandBufferCount = kCommandBuffers;
-    check(vkAllocateCommandBuffers(device, &allocate, commands.data()), "vkAllocateCommandBuffers");
+    pool = make_command_pool(owner, owner.queue_family());
+    allocate_commands(owner, pool, commands);
   }
   ~FrameSlot() {
     release_views();
@@ -68,29 +63,6 @@ struct FrameSlot {
   bool is_timed = true;         // the frame recorded last
   bool has_untaken_times = false;
 };
-
-void begin_commands(VkCommandBuffer commands) {
-  VkCommandBufferBeginInfo begin{VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
-  begin.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
-  check(vkBeginCommandBuffer(commands, &begin), "vkBeginCommandBuffer");
-}
-
-VkSemaphore make_timeline(const Device& device) {
-  VkSemaphoreTypeCreateInfo type{VK_STRUCTURE_TYPE_SEMAPHORE_TYPE_CREATE_INFO};
-  type.semaphoreType = VK_SEMAPHORE_TYPE_TIMELINE;
-  const VkSemaphoreCreateInfo info{VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO, &type, 0};
-  VkSemaphore semaphore = VK_NULL_HANDLE;
-  check(vkCreateSemaphore(device.handle(), &info, nullptr, &semaphore), "vkCreateSemaphore");
-  return semaphore;
-}
-
-VkSemaphoreSubmitInfo semaphore_info(VkSemaphore semaphore, std::uint64_t value, VkPipelineStageFlags2 stages) {
-  VkSemaphoreSubmitInfo info{VK_STRUCTURE_TYPE_SEMAPHORE_SUBMIT_INFO};
-  info.semaphore = semaphore;
-  info.value = value;
-  info.stageMask = stages;
-  return info;
-}
 
 // What traces and what shows it.
 struct Passes {
@@ -129,11 +101,7 @@ struct FrameRenderer::Impl {
   FrameSlot& slot() { return slots[slot_index()]; }
 
   void wait_for(std::uint64_t value) const {
-    VkSemaphoreWaitInfo info{VK_STRUCTURE_TYPE_SEMAPHORE_WAIT_INFO};
-    info.semaphoreCount = 1;
-    info.pSemaphores = &timeline;
-    info.pValues = &value;
-    check(vkWaitSemaphores(device.handle(), &info, UINT64_MAX), "vkWaitSemaphores");
+    check(wait_for_timeline(device, timeline, value), "vkWaitSemaphores");
   }
 
   // Highest frame that is known to have finished.

@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include "render/check.h"
+#include "render/commands.h"
 
 namespace probewalk {
 namespace {
@@ -10,10 +11,7 @@ namespace {
 // A command pool and a fence for as long as one batch of commands runs.
 struct OneShot {
   explicit OneShot(const Device& owner) : device(owner.handle()) {
-    VkCommandPoolCreateInfo pool_info{VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO};
-    pool_info.flags = VK_COMMAND_POOL_CREATE_TRANSIENT_BIT;
-    pool_info.queueFamilyIndex = owner.queue_family();
-    check(vkCreateCommandPool(device, &pool_info, nullptr, &pool), "vkCreateCommandPool");
+    pool = make_command_pool(owner, owner.queue_family(), VK_COMMAND_POOL_CREATE_TRANSIENT_BIT);
     const VkFenceCreateInfo fence_info{VK_STRUCTURE_TYPE_FENCE_CREATE_INFO, nullptr, 0};
     check(vkCreateFence(device, &fence_info, nullptr, &fence), "vkCreateFence");
   }
@@ -33,15 +31,9 @@ struct OneShot {
 
 void run_commands(const Device& device, const std::function<void(VkCommandBuffer)>& record) {
   const OneShot shot(device);
-  VkCommandBufferAllocateInfo allocate{VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO};
-  allocate.commandPool = shot.pool;
-  allocate.level = VK_COMMAND_BUFFER_LEVEL_PRIMARY;
-  allocate.commandBufferCount = 1;
   VkCommandBuffer commands = VK_NULL_HANDLE;
-  check(vkAllocateCommandBuffers(device.handle(), &allocate, &commands), "vkAllocateCommandBuffers");
-  VkCommandBufferBeginInfo begin{VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
-  begin.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
-  check(vkBeginCommandBuffer(commands, &begin), "vkBeginCommandBuffer");
+  allocate_commands(device, shot.pool, {&commands, 1});
+  begin_commands(commands);
   record(commands);
   check(vkEndCommandBuffer(commands), "vkEndCommandBuffer");
 

@@ -68,6 +68,10 @@ class ProbeArena {
 
   // Any thread. Throws VulkanError (VK_ERROR_OUT_OF_DEVICE_MEMORY) when no room is left, or none in one piece.
   Piece allocate(std::uint64_t size_bytes);
+  // Of an arena of stated size, in pieces of up to `largest_piece_bytes`: what may be held for nearly every level to
+  // find room (all but one in a thousand where there is room for 50 pieces). The fewer pieces there is room for, the
+  // more is lost between them.
+  static double usable_share(std::uint64_t size_bytes, std::uint64_t largest_piece_bytes);
   // Taken from the device, whether handed out or not.
   std::uint64_t reserved_bytes() const;
 

@@ -3,6 +3,7 @@
 #include <cstring>
 
 #include "render/check.h"
+#include "render/commands.h"
 
 namespace probewalk {
 
@@ -19,14 +20,8 @@ SideView::SideView(const Device& device, const TracerOptions& tracer, VkFormat f
   target_.extent = tracer.extent_px;
   target_.layers = 1;
   target_.final_layout = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
-  VkCommandPoolCreateInfo pool{VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO};
-  pool.queueFamilyIndex = device.queue_family();
-  check(vkCreateCommandPool(device.handle(), &pool, nullptr, &pool_), "vkCreateCommandPool");
-  VkCommandBufferAllocateInfo commands{VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO};
-  commands.commandPool = pool_;
-  commands.level = VK_COMMAND_BUFFER_LEVEL_PRIMARY;
-  commands.commandBufferCount = 1;
-  check(vkAllocateCommandBuffers(device.handle(), &commands, &commands_), "vkAllocateCommandBuffers");
+  pool_ = make_command_pool(device, device.queue_family());
+  allocate_commands(device, pool_, {&commands_, 1});
 }
 
 SideView::~SideView() {
@@ -38,9 +33,7 @@ VkCommandBuffer SideView::record(const FrameConstants& constants) {
   std::memcpy(constants_.mapped(), &constants, sizeof(constants));
   constants_.flush();
   check(vkResetCommandPool(device_.handle(), pool_, 0), "vkResetCommandPool");
-  VkCommandBufferBeginInfo begin{VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
-  begin.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
-  check(vkBeginCommandBuffer(commands_, &begin), "vkBeginCommandBuffer");
+  begin_commands(commands_);
   tracer_.record(commands_, constants_.address(), extent());
   // Whoever copied the last picture comes first.
   VkImageMemoryBarrier2 copied =

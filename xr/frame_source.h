@@ -92,8 +92,6 @@ class FrameSource {
   virtual float fade() const { return 0.0f; }
   // While the user aims a teleport: its way, in the world.
   virtual const FloorArc* aim() const { return nullptr; }
-  // How far locomotion narrows the view: 0 = not at all, 1 = as far as it goes.
-  virtual float vignette() const { return 0.0f; }
   // Whether a person's head moves the view, which no wall holds back.
   virtual bool head_is_real() const { return false; }
   // One for each frame whose time has come since the last call; asks the runtime. Always empty where a display has no

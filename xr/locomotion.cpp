@@ -10,7 +10,6 @@ namespace {
 constexpr double kHeightSmoothing_s = 0.1;
 constexpr double kDeadZone = 0.15;  // of a stick that nobody touches
 constexpr double kSnapAt = 0.7, kSnapAgainBelow = 0.4;
-constexpr double kVignetteUp_s = 0.15, kVignetteDown_s = 0.3;
 // A long pause does not become a long march.
 constexpr int kMaxSteps = 200;
 
@@ -28,7 +27,7 @@ glm::dvec2 out_of_dead_zone(glm::dvec2 stick) {
 }  // namespace
 
 Locomotion::Locomotion(const FloorMap& floor, const LocomotionOptions& options)
-    : floor_(floor), options_(options), vignette_(kVignetteUp_s, kVignetteDown_s) {
+    : floor_(floor), options_(options) {
   rig_.scale = options.world_scale;
 }
 
@@ -69,10 +68,8 @@ void Locomotion::advance(const HeadPose& head, const MoveInput& input, double dt
     }
     stand_over(head, *target_m);
   }
-  moves_smoothly_ = false;
   turn(head, input.turn, dt_s);
   walk(head, input, dt_s);
-  vignette_.advance(options_.vignette && moves_smoothly_, dt_s);
   take_aim(head, input);
   if (input.recentre) recentre();
 }
@@ -82,7 +79,6 @@ void Locomotion::turn(const HeadPose& head, double input, double dt_s) {
     const double rate = out_of_dead_zone(input);
     if (rate == 0.0) return;
     rig_ = rig_.turned_about(head.position_m, -rate * kTurnSpeed_rad_s * dt_s);
-    moves_smoothly_ = true;
   } else if (options_.turn == TurnStyle::kSnap) {
     if (std::abs(input) < kSnapAgainBelow) snapped_ = false;
     if (std::abs(input) < kSnapAt || std::exchange(snapped_, true)) return;
@@ -105,25 +101,25 @@ void Locomotion::walk(const HeadPose& head, const MoveInput& input, double dt_s)
     const double step_m = floor_.cell_m * 0.5;
     const double wanted = std::ceil(glm::length(move) / step_m);
     const int steps = static_cast<int>(std::min<double>(wanted, kMaxSteps));
-    for (int i = 0; i < steps; ++i) moves_smoothly_ = step(move / wanted) || moves_smoothly_;
+    for (int i = 0; i < steps; ++i) step(move / wanted);
     rig_ = rig_.with_head_over({foot_m_.x, foot_m_.z}, head.position_m);
   }
   smooth_floor_m_ += (foot_m_.y - smooth_floor_m_) * (1.0 - std::exp(-dt_s / kHeightSmoothing_s));
   set_height();
 }
 
-bool Locomotion::step(glm::dvec2 move) {
+void Locomotion::step(glm::dvec2 move) {
   if (floor_.nodes.empty()) {
     foot_m_ += glm::dvec3(move.x, 0, move.y);
-    return true;
+    return;
   }
   const glm::dvec3 wanted = foot_m_ + glm::dvec3(move.x, 0, move.y);
   if (!options_.through_walls && !can_stand(floor_, foot_m_, 0.0) && can_stand(floor_, home_m_, 0.0)) {
     // A person who has leant into something comes back towards where they stood, and gets no further into it.
     const auto away_m = [&](glm::dvec3 at) { return glm::distance(glm::dvec2(at.x, at.z), {home_m_.x, home_m_.z}); };
-    if (away_m(wanted) >= away_m(foot_m_)) return false;
+    if (away_m(wanted) >= away_m(foot_m_)) return;
     foot_m_ = wanted;
-    return true;
+    return;
   }
   // A body that already overlaps a wall (a teleport into a corner) is only held by its centre, so that it can leave.
   const double radius_m = can_stand(floor_, foot_m_) ? kBodyRadius_m : 0.0;
@@ -135,9 +131,8 @@ bool Locomotion::step(glm::dvec2 move) {
     foot_m_ = there;
     foot_m_.y = floor_height_m(floor_, there).value_or(there.y);
     if (stands) home_m_ = foot_m_;
-    return true;
+    return;
   }
-  return false;
 }
 
 void Locomotion::take_aim(const HeadPose& head, const MoveInput& input) {

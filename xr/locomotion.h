@@ -30,7 +30,6 @@ enum class TurnStyle {
 struct LocomotionOptions {
   TurnStyle turn = TurnStyle::kSnap;
   double snap_rad = std::numbers::pi / 6;
-  bool vignette = false;       // narrows the view while it moves smoothly
   bool through_walls = false;  // walls hold nobody; floors still carry
   double world_scale = 1.0;    // metres of the scene to one of the wearer's; 0.01 to 100
   // Over the floor, of a resting head, in the wearer's metres. Counts where the rig's floor is not known.
@@ -85,15 +84,14 @@ class Locomotion {
   const Rig& rig() const { return rig_; }
   // Where the head is, at the height of an ordinary eye over its floor: an anchor that gives the same rig.
   Pose anchor(const HeadPose& head) const;
-  float fade() const { return blink_.darkness(); }      // 0 = picture, 1 = black
-  float vignette() const { return vignette_.value(); }  // 0 = all of the view
+  float fade() const { return blink_.darkness(); }  // 0 = picture, 1 = black
   // While the person aims: the way of the throw in the world. Its landing is where a teleport would lead. Else null.
   const FloorArc* aim() const { return aim_ ? &*aim_ : nullptr; }
 
  private:
   void turn(const HeadPose& head, double input, double dt_s);
   void walk(const HeadPose& head, const MoveInput& input, double dt_s);
-  bool step(glm::dvec2 move);
+  void step(glm::dvec2 move);
   void take_aim(const HeadPose& head, const MoveInput& input);
   void recentre();
   void stand_over(const HeadPose& head, glm::dvec3 foot_m);
@@ -110,8 +108,6 @@ class Locomotion {
   Blink blink_;
   bool recentres_ = false;  // the blink under way
   bool snapped_ = false;    // and the stick has not come back since
-  bool moves_smoothly_ = false;
-  Ramp vignette_;
   std::optional<FloorArc> aim_;
 };
 

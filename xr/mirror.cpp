@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "render/check.h"
+#include "render/commands.h"
 #include "xr/latency/clock.h"
 
 namespace probewalk {
@@ -24,14 +25,8 @@ Mirror::Mirror(Window& window, const Device& device, VkExtent2D eye, std::uint32
                                      VK_IMAGE_USAGE_SAMPLED_BIT})),
       swapchain_(device, window.create_surface(device.instance()), 1, WindowSwapchain::Sharing::kBesideHeadset,
                  overlay) {
-  VkCommandPoolCreateInfo pool{VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO};
-  pool.queueFamilyIndex = device.queue_family();
-  check(vkCreateCommandPool(device.handle(), &pool, nullptr, &pool_), "vkCreateCommandPool");
-  VkCommandBufferAllocateInfo commands{VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO};
-  commands.commandPool = pool_;
-  commands.level = VK_COMMAND_BUFFER_LEVEL_PRIMARY;
-  commands.commandBufferCount = 1;
-  check(vkAllocateCommandBuffers(device.handle(), &commands, &commands_), "vkAllocateCommandBuffers");
+  pool_ = make_command_pool(device, device.queue_family());
+  allocate_commands(device, pool_, {&commands_, 1});
   const VkFenceCreateInfo fence{VK_STRUCTURE_TYPE_FENCE_CREATE_INFO};
   check(vkCreateFence(device.handle(), &fence, nullptr, &copied_), "vkCreateFence");
   thread_ = std::thread([this] { show_pictures(); });
@@ -91,9 +86,7 @@ void Mirror::settle() {
 void Mirror::copy(const FrameTarget& target) {
   check(vkResetCommandPool(device_.handle(), pool_, 0), "vkResetCommandPool");
   check(vkResetFences(device_.handle(), 1, &copied_), "vkResetFences");
-  VkCommandBufferBeginInfo begin{VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
-  begin.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
-  check(vkBeginCommandBuffer(commands_, &begin), "vkBeginCommandBuffer");
+  begin_commands(commands_);
   transition(commands_, target.image, target.final_layout, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
   transition(commands_, copy_.handle(), VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
   VkImageCopy region{};

@@ -49,7 +49,6 @@ class OpenXrSource final : public FrameSource {
   void end(const FrameTiming& timing, const std::vector<ViewPose>& rendered_views) override;
   float fade() const override { return locomotion_.fade(); }
   const FloorArc* aim() const override { return locomotion_.aim(); }
-  float vignette() const override { return locomotion_.vignette(); }
   bool head_is_real() const override { return true; }
   std::optional<FrameOutcome> outcome() const override { return frame_.outcome; }
   std::vector<PoseError> take_pose_errors() override;

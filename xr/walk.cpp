@@ -79,6 +79,7 @@ class Walk {
   Walk(const WalkOptions& options, const Pack& pack, Progress& progress)
       : options_(options), pack_(pack), progress_(progress), display_options_(options.display) {
     display_options_.overlay = &books_.overlay;
+    display_options_.offscreen_in_real_time = offscreen_in_real_time(options);
     books_.overlay.show(options.overlay);
   }
 
@@ -142,15 +143,13 @@ WalkResult Walk::run() {
 void Walk::begin(std::optional<Path> path) {
   const Manifest& manifest = pack_.manifest();
   const DisplayOpener open = options_.open_display ? options_.open_display : DisplayOpener(open_display);
-  DisplayOptions display_options = display_options_;
-  display_options.offscreen_in_real_time = offscreen_in_real_time(options_);
-  display_ = std::make_unique<Display>(open(display_options, manifest.floor, manifest.start));
+  display_ = std::make_unique<Display>(open(display_options_, manifest.floor, manifest.start));
   note_display();
   const bool offscreen = display_->source->kind() == "offscreen";
   books_.frames = frame_limit(options_, offscreen, path);
   books_.view = view_of(manifest, offscreen, std::move(path), books_.frames);
   books_.ledger = Ledger({.warmup_frames = std::min(kWarmupFrames, books_.frames.value_or(10 * kWarmupFrames) / 10),
-                          .has_deadlines = !offscreen || display_options.offscreen_in_real_time});
+                          .has_deadlines = !offscreen || display_options_.offscreen_in_real_time});
   books_.info = run_info(options_, *display_);
   // Before the walk, not after it, is the time to hear that nothing can be written.
   if (options_.report) make_run_folder(*options_.report);

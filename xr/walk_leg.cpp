@@ -172,7 +172,8 @@ std::vector<ViewPose> WalkLeg::draw(const FrameTiming& timing, FrameRecord& reco
   record.locate_early = stamped([&] { views = books_.view.locate(source_, timing, head); });
   if (views.empty()) return {};
 
-  rooms_.update(head, timing.predicted_display_ns, record);
+  const FloorArc* aim = source_.aim();
+  rooms_.update(head, aim != nullptr ? aim->landing_m : std::nullopt, timing.predicted_display_ns, record);
   if (source_.head_is_real()) {
     wall_fade_.advance(rooms_.is_free(head.position_m), static_cast<double>(timing.period_ns) * 1e-9);
   }

@@ -6,6 +6,7 @@
 
 #include "content/error.h"
 #include "render/frame_renderer.h"
+#include "render/probe_arena.h"
 #include "xr/latency/clock.h"
 
 namespace probewalk {
@@ -13,9 +14,20 @@ namespace {
 
 constexpr auto kSettlePatience = std::chrono::minutes(5);
 constexpr double kVelocitySmoothing_s = 0.2;  // head bob and sway average out
-// Of an arena whose pieces come and go; with less in it nearly every level finds room (ProbeArenaTest).
-constexpr double kUsableShare = 7.0 / 8.0;
 constexpr double kJump_m = 0.5;  // further in one frame is a teleport, not a motion
+
+// What may be held of a stated budget. The reserve gives way to what a walk cannot do without.
+double usable_share(const Manifest& manifest, std::uint64_t budget_bytes) {
+  std::uint64_t largest_probe = 0;
+  for (const RoomEntry& room : manifest.rooms) {
+    for (const LevelEntry& level : room.levels) {
+      if (room.probe_count > 0) largest_probe = std::max(largest_probe, level.bytes_device / room.probe_count);
+    }
+  }
+  const double share = ProbeArena::usable_share(budget_bytes, largest_probe);
+  const double least = static_cast<double>(minimum_budget(manifest) + 1) / static_cast<double>(budget_bytes);
+  return std::max(share, std::min(least, 1.0));
+}
 
 // What all rooms at all levels can take.
 std::uint64_t bytes_of_all(const Manifest& manifest) {
@@ -29,17 +41,19 @@ ProbeStoreOptions store_options(const WalkRoomsOptions& options, const Manifest&
                           .fade_frames = options.fade_levels ? WalkRooms::kLevelFadeFrames : 0};
   // A stated budget is taken at once: no other can have it later. Without one memory is taken as it is needed.
   if (options.budget_bytes != kUnlimitedBudget) {
-    const auto all = static_cast<std::uint64_t>(static_cast<double>(bytes_of_all(manifest)) / kUsableShare);
+    const double share = usable_share(manifest, options.budget_bytes);
+    const auto all = static_cast<std::uint64_t>(static_cast<double>(bytes_of_all(manifest)) / share);
     store.arena_bytes = std::min(options.budget_bytes, all);
   }
   return store;
 }
 
-StreamerOptions streamer_options(const WalkRoomsOptions& options, const Device& device, const ChunkSource& source) {
+StreamerOptions streamer_options(const WalkRoomsOptions& options, const Manifest& manifest, const Device& device,
+                                 const ChunkSource& source) {
   StreamerOptions streamer;
   if (options.budget_bytes != kUnlimitedBudget) {
     streamer.residency.budget_bytes = options.budget_bytes;
-    streamer.residency.usable_share = kUsableShare;
+    streamer.residency.usable_share = usable_share(manifest, options.budget_bytes);
   } else {
     streamer.residency.budget_bytes = device.free_bytes();
   }
@@ -55,9 +69,12 @@ StreamerOptions streamer_options(const WalkRoomsOptions& options, const Device& 
 // Empty = it arrived.
 std::string end_of(const LoadResult& load) {
   switch (load.end) {
-    case LoadResult::End::kArrived: return {};
-    case LoadResult::End::kRefused: return "takes more than the pack states";
-    case LoadResult::End::kCancelled: return kNotNeededAnyMore;
+    case LoadResult::End::kArrived:
+      return {};
+    case LoadResult::End::kRefused:
+      return "takes more than the pack states";
+    case LoadResult::End::kCancelled:
+      return kNotNeededAnyMore;
     case LoadResult::End::kUnavailable:
     case LoadResult::End::kBad:
       return load.error;
@@ -65,11 +82,14 @@ std::string end_of(const LoadResult& load) {
   return {};
 }
 
-// The finest level of `room` among those wanted; -1 = none.
-std::int32_t wanted_level(const ResidencyDecision& decision, std::uint32_t room) {
+// The finest level of `room` among those wanted, and those that would be if they could be loaded; -1 = none.
+std::int32_t wanted_level(const ResidencyDecision& decision, const LevelBook& book, std::uint32_t room) {
   std::int32_t level = -1;
   for (const LevelKey& key : decision.wanted) {
     if (key.room == room) level = std::max(level, static_cast<std::int32_t>(key.level));
+  }
+  for (std::uint32_t k = 0; k < book.levels(room); ++k) {
+    if (book.status({room, k}) == LevelStatus::kFailed) level = std::max(level, static_cast<std::int32_t>(k));
   }
   return level;
 }
@@ -87,7 +107,8 @@ WalkRooms::WalkRooms(const Pack& pack, const Device& device, const WalkRoomsOpti
       free_air_(pack.manifest().grid, pack.manifest().probe_positions_m.size()),
       streamer_(
           pack.manifest(), *source_, [this](LoadedLevel&& loaded) { deliver(std::move(loaded)); },
-          [this](LevelKey key) { store_.evict(key.room, key.level); }, streamer_options(options, device, *source_)) {}
+          [this](LevelKey key) { store_.evict(key.room, key.level); },
+          streamer_options(options, pack.manifest(), device, *source_)) {}
 
 // On a loader thread.
 void WalkRooms::deliver(LoadedLevel&& loaded) {
@@ -97,7 +118,8 @@ void WalkRooms::deliver(LoadedLevel&& loaded) {
   store_.upload({loaded.room, loaded.level, loaded.first_probe, std::move(loaded.probes)});
 }
 
-void WalkRooms::update(const ViewPose& head, std::int64_t display_ns, FrameRecord& record) {
+void WalkRooms::update(const ViewPose& head, const std::optional<glm::dvec3>& aim_m, std::int64_t display_ns,
+                       FrameRecord& record) {
   const std::int64_t begin_ns = now_ns();
   double dt_s = 0.0;
   if (last_display_ns_ && display_ns > *last_display_ns_) {
@@ -109,18 +131,19 @@ void WalkRooms::update(const ViewPose& head, std::int64_t display_ns, FrameRecor
   last_display_ns_ = display_ns;
   walker_.head_m = head.position_m;
   walker_.look = head.orientation * glm::dvec3(0, 0, -1);
+  walker_.aim_m = aim_m;
   streamer_.update(walker_);
   report_errors();
 
   const ResidencyDecision& decision = streamer_.decision();
   const int shown = store_.level_shown(decision.room);
-  // Nothing to show is black at once; what arrives comes up gently. A room without probes of its own is shown by those of
-  // the rooms beside it.
+  // Nothing to show is black at once; what arrives comes up gently. A room without probes of its own is shown by those
+  // of the rooms beside it.
   const bool has_probes = pack_.manifest().rooms[decision.room].probe_count > 0;
   darkness_ = has_probes && shown < 0 ? 1.0 : std::max(0.0, darkness_ - dt_s / kFadeIn_s);
   record.room = static_cast<std::int32_t>(decision.room);
   record.level_shown = shown;
-  record.level_wanted = wanted_level(decision, decision.room);
+  record.level_wanted = wanted_level(decision, streamer_.book(), decision.room);
   record.queue_depth = static_cast<std::uint32_t>(streamer_.statistics().queue_depth) + store_.queue_depth();
   record.device_bytes = store_.device_bytes();
   const std::uint64_t uploaded = store_.bytes_uploaded();

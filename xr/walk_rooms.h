@@ -43,7 +43,9 @@ class WalkRooms {
   ProbeStore& store() { return store_; }
 
   // Once a frame, on the frame thread; never waits for a disk. Fills in what the record says about streaming.
-  void update(const ViewPose& head, std::int64_t display_ns, FrameRecord& record);
+  // `aim_m`: where a teleport would lead, while one is aimed.
+  void update(const ViewPose& head, const std::optional<glm::dvec3>& aim_m, std::int64_t display_ns,
+              FrameRecord& record);
   // Waits until what the last update's walker wants has been handed to the device. Throws BadInput when the pack does
   // not deliver.
   void settle();

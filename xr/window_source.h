@@ -46,7 +46,6 @@ class WindowSource final : public FrameSource {
   void end(const FrameTiming& timing, const std::vector<ViewPose>& rendered_views) override;
   float fade() const override { return locomotion_.fade(); }
   const FloorArc* aim() const override { return locomotion_.aim(); }
-  float vignette() const override { return locomotion_.vignette(); }
   bool take_screenshot_request() override;
   bool take_lookups_request() override;
 

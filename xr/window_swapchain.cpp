@@ -4,6 +4,7 @@
 
 #include "content/error.h"
 #include "render/check.h"
+#include "render/commands.h"
 #include "render/image.h"
 #include "xr/latency/clock.h"
 
@@ -37,17 +38,10 @@ WindowSwapchain::WindowSwapchain(const Device& device, VkSurfaceKHR surface, std
                                  const OverlayBoard* overlay)
     : device_(device), surface_(surface), sharing_(sharing), overlay_(device, overlay, slots) {
   choose_format_and_mode();
-  VkCommandPoolCreateInfo pool{VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO};
-  pool.flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT;
-  pool.queueFamilyIndex = device.queue_family();
-  check(vkCreateCommandPool(device.handle(), &pool, nullptr, &pool_), "vkCreateCommandPool");
+  pool_ = make_command_pool(device, device.queue_family(), VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT);
   slots_.resize(slots);
   for (Slot& slot : slots_) {
-    VkCommandBufferAllocateInfo commands{VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO};
-    commands.commandPool = pool_;
-    commands.level = VK_COMMAND_BUFFER_LEVEL_PRIMARY;
-    commands.commandBufferCount = 1;
-    check(vkAllocateCommandBuffers(device.handle(), &commands, &slot.commands), "vkAllocateCommandBuffers");
+    allocate_commands(device, pool_, {&slot.commands, 1});
     const VkSemaphoreCreateInfo semaphore{VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO};
     check(vkCreateSemaphore(device.handle(), &semaphore, nullptr, &slot.available), "vkCreateSemaphore");
     const VkFenceCreateInfo fence{VK_STRUCTURE_TYPE_FENCE_CREATE_INFO, nullptr, VK_FENCE_CREATE_SIGNALED_BIT};
@@ -225,9 +219,7 @@ bool WindowSwapchain::present(std::uint32_t index, const FrameTarget& eyes, cons
 void WindowSwapchain::record(std::uint32_t index, VkImage screen, const FrameTarget& eyes,
                              const std::vector<ShownView>& layout) {
   const Slot& slot = slots_[index];
-  VkCommandBufferBeginInfo begin{VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
-  begin.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
-  check(vkBeginCommandBuffer(slot.commands, &begin), "vkBeginCommandBuffer");
+  begin_commands(slot.commands);
   constexpr VkPipelineStageFlags2 kCopy = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT;
   barrier(slot.commands, eyes.image, eyes.layers, eyes.final_layout, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
           VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_WRITE_BIT, kCopy, VK_ACCESS_2_TRANSFER_READ_BIT);

@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # web_server_walk.sh PACK OUT: walks for minutes in real time through a pack that nginx serves over a slow line on which
 # some requests fail, within a part of the pack's device memory, and prints what was late. By hand:
-#   probewalk on the PATH, slow_link beside it (or in BIN), nginx and xvfb-run installed
+#   probewalk on the PATH, slow_link beside it (or in BIN), nginx installed
 # Settings: SECONDS_LONG=300 RATE_MB_S=20 LATENCY_MS=50 FAILING=1% BUDGET_PART=10 EYE=320x360 WALK=FILE (a recorded path;
-# without one the pack's tour, once, in that time)
+# without one the pack's tour)
 set -euo pipefail
 pack=$(realpath "$1"); mkdir -p "$2"; out=$(realpath "$2")
 seconds=${SECONDS_LONG:-300} rate=${RATE_MB_S:-20} latency=${LATENCY_MS:-50} failing=${FAILING:-1%} part=${BUDGET_PART:-10}
@@ -55,14 +55,9 @@ echo "line: first byte after $first ms; $bytes bytes in $all ms"
 device_bytes=$("$bin/probewalk" info "$pack" --json | sed -n 's/^  "bytes_device": \([0-9]*\).*/\1/p' | head -n 1)
 budget=$((device_bytes / part >> 20)); [ $budget -gt 0 ] || budget=1
 echo "pack: $((device_bytes >> 20)) MiB on the device; budget $budget MiB"
-walk=${WALK:-}
-if [ -z "$walk" ]; then
-  walk=$out/tour.jsonl
-  "$bin/probewalk" walk "$pack" --display offscreen --realtime --frames $((seconds * 72)) --eye-size 16x16 --quiet \
-    --record "$walk"
-fi
-xvfb-run -a "$bin/probewalk" walk "http://127.0.0.1:$port" --display window --path "$walk" --seconds "$seconds" \
-  --realtime --eye-size "$eye" --device-budget $budget --cache "$out/cache" --report "$out/report" 2>"$out/notes" ||
+"$bin/probewalk" walk "http://127.0.0.1:$port" --display offscreen --realtime --seconds "$seconds" \
+  ${WALK:+--path "$WALK"} --eye-size "$eye" --device-budget $budget --cache "$out/cache" --report "$out/report" \
+  2>"$out/notes" ||
   { tail -n 5 "$out/notes"; exit 1; }
 
 number() { sed -n "s/^ *\"$1\": \([^,]*\),*\$/\1/p" "$out/report/summary.json" | head -n 1; }

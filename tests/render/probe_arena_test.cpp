@@ -52,10 +52,23 @@ TEST_F(ProbeArenaTest, GrowsByBlocksAndShrinksWhenTheyAreEmpty) {
   EXPECT_EQ(arena.reserved_bytes(), 0u);
 }
 
-// Rooms at two levels come and go as on a walk, with seven eighths of the arena held at all times (WalkRooms).
-TEST_F(ProbeArenaTest, LittleIsLostBetweenPieces) {
-  constexpr std::uint64_t kArena = 64u << 20, kHeld = kArena / 8 * 7;
-  ProbeArena arena(device, kArena);
+struct Levels {
+  std::uint64_t arena_bytes;
+  int coarse_n, most_probes;
+};
+
+// Rooms at two levels come and go as on a walk, with the share that is called usable held at all times.
+class ProbeArenaOnAWalk : public ProbeArenaTest, public testing::WithParamInterface<Levels> {};
+
+TEST_P(ProbeArenaOnAWalk, LittleIsLostBetweenPieces) {
+  constexpr int kFine = 256;
+  const auto geometry_bytes = [](int n, double cut) {
+    return static_cast<std::uint64_t>(6 * n * n + 32 * static_cast<int>(cut));
+  };
+  const std::uint64_t arena_bytes = GetParam().arena_bytes;
+  const auto held_most = static_cast<std::uint64_t>(
+      static_cast<double>(arena_bytes) * ProbeArena::usable_share(arena_bytes, geometry_bytes(kFine, 3.0 * kFine)));
+  ProbeArena arena(device, arena_bytes);
   test::Random random(7);
   std::vector<std::vector<ProbeArena::Piece>> rooms;
   std::uint64_t held = 0;
@@ -66,17 +79,17 @@ TEST_F(ProbeArenaTest, LittleIsLostBetweenPieces) {
     return bytes;
   };
   for (int k = 0; k < 20000; ++k) {
-    // Geometry of a size that depends on how many cells are cut, and radiance of half its side.
-    const int n = random(0.0, 1.0) < 0.5 ? 256 : 64;
-    const int probes = static_cast<int>(random(1.0, 9.0));
+    // Geometry of a size that depends on how many cells are cut, and radiance of a quarter as many texels.
+    const int n = random(0.0, 1.0) < 0.5 ? kFine : GetParam().coarse_n;
+    const int probes = static_cast<int>(random(1.0, GetParam().most_probes + 1.0));
     std::vector<std::uint64_t> sizes;
     for (int p = 0; p < probes; ++p) {
-      sizes.push_back(static_cast<std::uint64_t>(6 * n * n + 32 * static_cast<int>(random(0.0, 3.0 * n))));
+      sizes.push_back(geometry_bytes(n, random(0.0, 3.0 * n)));
       sizes.push_back(static_cast<std::uint64_t>(6 * n * n / 4));
     }
     std::uint64_t need = 0;
     for (const std::uint64_t size : sizes) need += size;
-    while (held + need > kHeld) {
+    while (held + need > held_most) {
       const auto gone = static_cast<std::ptrdiff_t>(random(0.0, static_cast<double>(rooms.size())));
       held -= bytes_of(rooms[static_cast<std::size_t>(gone)]);
       rooms.erase(rooms.begin() + gone);
@@ -93,6 +106,9 @@ TEST_F(ProbeArenaTest, LittleIsLostBetweenPieces) {
   }
   EXPECT_LT(refused, asked / 1000) << "of " << asked;
 }
+INSTANTIATE_TEST_SUITE_P(Arenas, ProbeArenaOnAWalk,
+                         testing::Values(Levels{64u << 20, 64, 8}, Levels{27u << 20, 128, 4},
+                                         Levels{256u << 20, 128, 4}));
 
 }  // namespace
 }  // namespace probewalk

@@ -30,24 +30,10 @@ const fs::path& pack() {
   return folder;
 }
 
-bool installed(const std::string& program) {
-  return std::system(("command -v " + program + " >/dev/null 2>&1").c_str()) == 0;
-}
-
 // Runs lines of bash in `folder`; $probewalk and $pack are the executable and the pack.
 RunResult run_script(const fs::path& folder, const std::string& script) {
-  std::ofstream(folder / "script.sh") << "set -u\ncd '" << folder.string() << "'\nprobewalk='" << PROBEWALK_EXECUTABLE
-                                      << "'\npack='" << pack().string() << "'\nwith_monado='" << PROBEWALK_SOURCE_DIR
-                                      << "/tools/lib/with-monado.sh'\n"
-                                      << script << "\n";
-  const std::string file = (folder / "script.sh").string();
-  const int status =
-      std::system(("bash '" + file + "' >'" + folder.string() + "/stdout' 2>'" + folder.string() + "/stderr'").c_str());
-  RunResult result;
-  result.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
-  result.out = read_text(folder / "stdout");
-  result.err = read_text(folder / "stderr");
-  return result;
+  return run_bash(folder, std::string("probewalk='") + PROBEWALK_EXECUTABLE + "'\npack='" + pack().string() +
+                              "'\nwith_monado='" + PROBEWALK_SOURCE_DIR + "/tools/lib/with-monado.sh'\n" + script);
 }
 
 // A screen of its own for what follows in the script.

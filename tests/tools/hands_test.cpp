@@ -35,10 +35,6 @@ const fs::path& pack() {
   return folder;
 }
 
-bool has_monado() {
-  return std::system("command -v monado-service >/dev/null 2>&1") == 0;
-}
-
 std::string walk_in_monado(const std::string& environment, const std::string& options) {
   return fmt::format(
       "cd '{{}}' && export XDG_CONFIG_HOME=$PWD/config {} && unset DISPLAY WAYLAND_DISPLAY && "
@@ -52,7 +48,7 @@ int run(const fs::path& folder, const std::string& script) {
 }
 
 TEST(Hands, OfTheSimulatedControllersAreTakenWithEveryProfileAccepted) {
-  if (!has_monado()) GTEST_SKIP() << "monado-service is not installed";
+  if (!installed("monado-service")) GTEST_SKIP() << "monado-service is not installed";
   const bool has_layer =
       std::system("ls /usr/share/openxr/1/api_layers/explicit.d/*core_validation* >/dev/null 2>&1") == 0;
   const fs::path folder = fresh_folder("hands-simulated");
@@ -181,7 +177,7 @@ std::string in_words(const std::vector<Step>& steps) {
 }
 
 TEST(Hands, TeleportTurnMoveAndRecentreTheWearer) {
-  if (!has_monado()) GTEST_SKIP() << "monado-service is not installed";
+  if (!installed("monado-service")) GTEST_SKIP() << "monado-service is not installed";
   const fs::path folder = fresh_folder("hands-remote");
   const std::vector<Step> walk = walk_with_hands(folder, "--turn 45", [](Play& play) {
     play.change([](RemoteState& state) {
@@ -214,7 +210,7 @@ TEST(Hands, TeleportTurnMoveAndRecentreTheWearer) {
 }
 
 TEST(Hands, OfAScaledAndSeatedWearerFindEyesAndFloorWhereStated) {
-  if (!has_monado()) GTEST_SKIP() << "monado-service is not installed";
+  if (!installed("monado-service")) GTEST_SKIP() << "monado-service is not installed";
   std::vector<std::vector<Step>> stood;
   for (const std::string options : {"", "--world-scale 2 --seated --eye-height 1.2"}) {
     const fs::path folder = fresh_folder("hands-scaled-" + std::to_string(stood.size()));

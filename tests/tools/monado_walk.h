@@ -1,9 +1,7 @@
 // Walks in a headset that Monado simulates, as other programs start them, and the books that they leave behind.
 #pragma once
 
-#include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -15,7 +13,7 @@
 namespace probewalk::test {
 
 inline bool has_monado() {
-  return std::system("command -v monado-service >/dev/null 2>&1") == 0;
+  return installed("monado-service");
 }
 
 struct MonadoWalk {
@@ -33,19 +31,11 @@ inline MonadoWalk walk_in_monado(const std::filesystem::path& folder, const std:
     write_room_pack(made);
     return made;
   }();
-  std::ofstream(folder / "script.sh") << "set -u\ncd '" << folder.string() << "'\nunset DISPLAY WAYLAND_DISPLAY\n"
-                                      << "export PROBEWALK_MONADO_LOG=$PWD/monado.log\n"
-                                      << environment << "\nbash '" << PROBEWALK_SOURCE_DIR
-                                      << "/tools/lib/with-monado.sh' null '" << PROBEWALK_EXECUTABLE << "' walk '"
-                                      << pack.string() << "' --display headset --eye-size 64x48 --report report "
-                                      << arguments << "\n";
-  const std::string script = "bash '" + (folder / "script.sh").string() + "' >'" + (folder / "stdout").string() +
-                             "' 2>'" + (folder / "stderr").string() + "'";
-  const int status = std::system(script.c_str());
   MonadoWalk walk;
-  walk.run.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
-  walk.run.out = read_text(folder / "stdout");
-  walk.run.err = read_text(folder / "stderr");
+  walk.run = run_bash(folder, "unset DISPLAY WAYLAND_DISPLAY\nexport PROBEWALK_MONADO_LOG=$PWD/monado.log\n" +
+                                  environment + "\nbash '" + PROBEWALK_SOURCE_DIR +
+                                  "/tools/lib/with-monado.sh' null '" + PROBEWALK_EXECUTABLE + "' walk '" +
+                                  pack.string() + "' --display headset --eye-size 64x48 --report report " + arguments);
   if (walk.run.exit_code != 0) return walk;
   walk.frames = parse_frames_csv(read_text(folder / "report" / "frames.csv"), "frames.csv");
   walk.summary = nlohmann::json::parse(read_text(folder / "report" / "summary.json"));

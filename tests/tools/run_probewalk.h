@@ -5,6 +5,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -61,6 +62,23 @@ inline pid_t start_probewalk(const std::filesystem::path& folder, const std::vec
 inline RunResult finish_probewalk(pid_t child, const std::filesystem::path& folder) {
   int status = 0;
   waitpid(child, &status, 0);
+  RunResult result;
+  result.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
+  result.out = read_text(folder / "stdout");
+  result.err = read_text(folder / "stderr");
+  return result;
+}
+
+inline bool installed(const std::string& program) {
+  return std::system(("command -v '" + program + "' >/dev/null 2>&1").c_str()) == 0;
+}
+
+// Runs lines of bash in `folder`, which receives the script and both streams.
+inline RunResult run_bash(const std::filesystem::path& folder, const std::string& lines) {
+  std::ofstream(folder / "script.sh") << "set -u\ncd '" << folder.string() << "'\n" << lines << "\n";
+  const auto quoted = [&](const char* name) { return "'" + (folder / name).string() + "'"; };
+  const int status =
+      std::system(("bash " + quoted("script.sh") + " >" + quoted("stdout") + " 2>" + quoted("stderr")).c_str());
   RunResult result;
   result.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
   result.out = read_text(folder / "stdout");

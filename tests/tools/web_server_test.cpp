@@ -322,7 +322,7 @@ TEST_F(WebServer, ThatHasNoPackIsNamedInOneLine) {
 }
 
 TEST_F(WebServer, MaySpeakHttp2OverTls) {
-  if (std::system("command -v openssl >/dev/null") != 0) GTEST_SKIP() << "no openssl to make a certificate with";
+  if (!installed("openssl")) GTEST_SKIP() << "no openssl to make a certificate with";
   const fs::path dir = fresh_folder("web-server-tls");
   const std::string key = (dir / "key.pem").string(), certificate = (dir / "certificate.pem").string();
   ASSERT_EQ(std::system(("openssl req -x509 -newkey ec -pkeyopt ec_paramgen_curve:prime256v1 -nodes -days 2 "

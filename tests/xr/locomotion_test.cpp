@@ -3,9 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <functional>
 #include <numbers>
 
+#include "support/floors.h"
 #include "xr/desktop_head.h"
 #include "xr/frame_pacer.h"
 #include "xr/mirror_pacer.h"
@@ -15,41 +15,13 @@
 namespace probewalk {
 namespace {
 
-// A floor of 0.05 m columns over [0, size) m; `height` gives the floor's y, NaN = no floor there.
-FloorMap make_floor(glm::dvec2 size_m, const std::function<double(double x, double z)>& height,
-                    float headroom_m = 2.5f) {
-  FloorMap floor;
-  floor.cell_m = 0.05;
-  floor.columns = glm::ivec2(glm::round(size_m / floor.cell_m));
-  for (int iz = 0; iz < floor.columns.y; ++iz) {
-    for (int ix = 0; ix < floor.columns.x; ++ix) {
-      const double y = height((ix + 0.5) * floor.cell_m, (iz + 0.5) * floor.cell_m);
-      if (std::isnan(y)) continue;
-      FloorNode node;
-      node.ix = ix;
-      node.iz = iz;
-      node.floor_m = static_cast<float>(y);
-      node.headroom_m = headroom_m;
-      floor.nodes.push_back(node);
-    }
-  }
-  return floor;
-}
-
-Pose eye_at(double x, double z, double yaw_rad = 0.0, double floor_m = 0.0) {
-  Pose pose;
-  pose.position_m = {x, floor_m + kEyeHeight_m, z};
-  pose.yaw_rad = yaw_rad;
-  return pose;
-}
+using test::eye_at;
+using test::make_floor;
+using test::r2_point;
+using test::two_cells;
+using test::two_rooms;
 
 constexpr double kPi = std::numbers::pi;
-
-// Evenly over the unit square.
-glm::dvec2 r2_point(int i) {
-  // Roberts, The Unreasonable Effectiveness of Quasirandom Sequences (2018): steps of the plastic number.
-  return glm::fract(glm::dvec2(0.5) + static_cast<double>(i) * glm::dvec2(0.7548776662466927, 0.5698402909980532));
-}
 
 // Somebody at a desktop: the head stands in the middle of its rig.
 struct Person {
@@ -72,15 +44,6 @@ struct Person {
   Locomotion locomotion;
   DesktopHead head;
 };
-
-// Two rooms of 4 m x 2 m, z in [0, 2) and [2.15, 4), with a wall of 0.15 m between them and a door at x in [3, 3.8).
-double two_rooms(double x, double z) {
-  return z > 2.0 && z < 2.15 && !(x >= 3.0 && x < 3.8) ? NAN : 0.0;
-}
-// The same without a door.
-double two_cells(double, double z) {
-  return z > 2.0 && z < 2.15 ? NAN : 0.0;
-}
 
 TEST(Locomotion, WalksForwardAlongItsYaw) {
   const FloorMap floor = make_floor({4, 4}, [](double, double) { return 0.0; });
@@ -118,14 +81,13 @@ TEST(Locomotion, GoesWhereTheHeadLooksAtTheStatedSpeed) {
 
 TEST(Locomotion, HoldsStillForAStickInItsDeadZone) {
   const FloorMap floor = make_floor({4, 4}, [](double, double) { return 0.0; });
-  Person person(floor, eye_at(2, 2), {.turn = TurnStyle::kSmooth, .vignette = true});
+  Person person(floor, eye_at(2, 2), {.turn = TurnStyle::kSmooth});
   MoveInput input;
   input.wish = {0.1, -0.1};
   input.turn = 0.12;
   for (int i = 0; i < 100; ++i) person.locomotion.advance(person.head.pose(), input, 0.01);
   EXPECT_EQ(person.eye().position_m, glm::dvec3(2, kEyeHeight_m, 2));
   EXPECT_EQ(person.eye().yaw_rad, 0.0);
-  EXPECT_EQ(person.locomotion.vignette(), 0.0f);
 }
 
 TEST(Locomotion, IsStoppedByWallsAtABodysWidthAndSlidesAlongThem) {
@@ -272,26 +234,6 @@ TEST(Locomotion, SnapsAgainOnlyAfterTheStickCameBack) {
   input.turn = 1.0;
   still.press(input);
   EXPECT_EQ(still.eye().yaw_rad, 0.0);
-}
-
-TEST(Locomotion, NarrowsTheViewOnlyWhileItMovesSmoothly) {
-  const FloorMap floor = make_floor({4, 4}, two_cells);
-  Person person(floor, eye_at(2, 1), {.turn = TurnStyle::kSmooth, .vignette = true});
-  MoveInput turn;
-  turn.turn = 1.0;
-  for (int i = 0; i < 30; ++i) person.locomotion.advance(person.head.pose(), turn, 0.01);
-  EXPECT_EQ(person.locomotion.vignette(), 1.0f);
-  person.walk({0, 0}, 0.1);
-  EXPECT_GT(person.locomotion.vignette(), 0.0f) << "gradually";
-  person.walk({0, 0}, 0.5);
-  EXPECT_EQ(person.locomotion.vignette(), 0.0f);
-  person.walk({0.5, 1.0}, 0.3);
-  EXPECT_EQ(person.locomotion.vignette(), 1.0f);
-  person.walk({0, 1}, 5.0);  // into a corner, where nothing moves
-  EXPECT_EQ(person.locomotion.vignette(), 0.0f);
-  Person without(floor, eye_at(2, 1), {.turn = TurnStyle::kSmooth, .vignette = false});
-  without.walk({0, 1}, 0.3);
-  EXPECT_EQ(without.locomotion.vignette(), 0.0f);
 }
 
 TEST(Locomotion, TeleportsInTheDark) {
@@ -447,99 +389,6 @@ TEST(Locomotion, StartsOverTheFloorBelowHoweverHighTheHead) {
   Locomotion floating(FloorMap{}, {});
   floating.place(eye_at(2, 2), {{0, kEyeHeight_m, 0}, 0.0}, {});
   EXPECT_NEAR(floating.rig().world_from_rig({0, kEyeHeight_m, 0}).y, kEyeHeight_m, 1e-9);
-}
-
-TEST(FloorArc, OfNoGravityFindsTheFloorInViewAndNothingBehindWalls) {
-  const FloorMap floor = make_floor({4, 4}, two_rooms);
-  const auto landing = [&](glm::dvec3 from, glm::dvec3 direction) {
-    return arc_to_floor(floor, from, direction, 0.0, 12.0).landing_m;
-  };
-  const glm::dvec3 eye(1, kEyeHeight_m, 1);
-  const auto near = landing(eye, {0, -1.6, 0.5});
-  ASSERT_TRUE(near);
-  EXPECT_NEAR(near->z, 1.5, 0.03);
-  EXPECT_FALSE(landing(eye, {0, -1.6, 2.0}));  // the floor beyond the wall
-  EXPECT_FALSE(landing(eye, {0, 0.2, 1}));     // the ceiling
-  EXPECT_FALSE(landing(eye, {0, 0, 0}));
-  EXPECT_FALSE(landing(eye, {NAN, 0, 0}));
-  const auto through_door = landing({3.4, kEyeHeight_m, 1}, {0, -1.6, 2.0});
-  ASSERT_TRUE(through_door);
-  EXPECT_NEAR(through_door->z, 3.0, 0.03);
-}
-
-TEST(FloorArc, FliesAParabolaAndLandsOnIt) {
-  const FloorMap floor = make_floor({30, 30}, [](double, double) { return 0.25; }, 20.0f);
-  for (int i = 0; i < 256; ++i) {
-    const glm::dvec2 u = r2_point(i);
-    const double pitch_rad = (u.x - 0.5) * 3.0, yaw_rad = 2 * kPi * u.y;
-    const glm::dvec3 from(15, 1.45, 15);
-    const double across_m_s = kThrowSpeed_m_s * std::cos(pitch_rad), up_m_s = kThrowSpeed_m_s * std::sin(pitch_rad);
-    const FloorArc arc = arc_to_floor(
-        floor, from, {across_m_s * std::sin(yaw_rad), up_m_s, across_m_s * std::cos(yaw_rad)}, kGravity_m_s2, 60.0);
-    ASSERT_TRUE(arc.landing_m) << pitch_rad;
-    const double t_s = (up_m_s + std::sqrt(up_m_s * up_m_s + 2 * kGravity_m_s2 * 1.2)) / kGravity_m_s2;
-    EXPECT_NEAR(glm::distance(glm::dvec2(arc.landing_m->x, arc.landing_m->z), {15, 15}), across_m_s * t_s, 0.04);
-    EXPECT_FLOAT_EQ(static_cast<float>(arc.landing_m->y), 0.25f);
-    ASSERT_EQ(arc.points_m.size(), static_cast<std::size_t>(FloorArc::kPoints));
-    EXPECT_EQ(arc.points_m.front(), from);
-    EXPECT_EQ(arc.points_m.back(), *arc.landing_m);
-    for (const glm::dvec3& point : arc.points_m) {
-      const double t = glm::distance(glm::dvec2(point.x, point.z), {15, 15}) / across_m_s;
-      EXPECT_NEAR(point.y, 1.45 + up_m_s * t - 0.5 * kGravity_m_s2 * t * t, 0.05);
-    }
-  }
-}
-
-TEST(FloorArc, ClearsARailingThatARayDoesNotAndNoWall) {
-  // A step of 0.4 m at z in [2, 2.3), which a flat throw goes over.
-  const FloorMap step = make_floor({4, 8}, [](double, double z) { return z > 2 && z < 2.3 ? 0.4 : 0.0; });
-  const FloorArc over = arc_to_floor(step, {2, 1.2, 1}, {0, 2.0, 4.0}, kGravity_m_s2, 14.0);
-  ASSERT_TRUE(over.landing_m);
-  EXPECT_GT(over.landing_m->z, 2.3);
-  const FloorMap cells = make_floor({4, 4}, two_cells);
-  for (int i = 0; i < 512; ++i) {
-    const glm::dvec2 u = r2_point(i), v = r2_point(i + 9999);
-    const double yaw_rad = 2 * kPi * v.x, pitch_rad = (v.y - 0.5) * 3.0;
-    const glm::dvec3 direction(std::cos(pitch_rad) * std::sin(yaw_rad), std::sin(pitch_rad),
-                               std::cos(pitch_rad) * std::cos(yaw_rad));
-    const FloorArc arc =
-        arc_to_floor(cells, {4 * u.x, 1.2, 2 * u.y}, direction * kThrowSpeed_m_s, kGravity_m_s2, kTeleportReach_m);
-    if (arc.landing_m) {
-      EXPECT_LT(arc.landing_m->z, 2.0 + 1e-9);
-    }
-    for (const glm::dvec3& point : arc.points_m)
-      EXPECT_LT(point.z, 2.06) << "the arc is drawn to the wall and no further";
-  }
-}
-
-TEST(StandingNear, GivesABodyRoomOnTheSameSideOfTheWall) {
-  const FloorMap floor = make_floor({4, 4}, two_cells);
-  for (int i = 0; i < 256; ++i) {
-    const glm::dvec2 u = r2_point(i);
-    const glm::dvec3 foot(0.3 + 3.4 * u.x, 0, 0.3 + 1.69 * u.y);  // up to 1 cm from the wall
-    const glm::dvec3 there = standing_near(floor, foot);
-    EXPECT_TRUE(can_stand(floor, there));
-    EXPECT_LT(there.z, 2.0);
-    EXPECT_LE(glm::distance(there, foot), 2 * kBodyRadius_m + 1e-9);
-    if (can_stand(floor, foot)) {
-      EXPECT_EQ(there, foot);
-    }
-  }
-}
-
-TEST(ClearWay, EndsAtWallsAndGoesThroughDoors) {
-  const FloorMap floor = make_floor({4, 4}, two_rooms);
-  const glm::dvec3 eye(1, kEyeHeight_m, 1);
-  EXPECT_TRUE(is_clear_way(floor, eye, eye));
-  EXPECT_TRUE(is_clear_way(floor, eye, {3.4, 1.2, 1.2}));
-  EXPECT_FALSE(is_clear_way(floor, eye, {1, 1.3, 3})) << "a hand held through the wall";
-  EXPECT_FALSE(is_clear_way(floor, {1, 1.3, 3}, eye));
-  EXPECT_TRUE(is_clear_way(floor, {3.4, kEyeHeight_m, 1}, {3.4, 1.3, 3})) << "through the door";
-  const FloorMap with_table =
-      make_floor({4, 4}, [](double x, double z) { return x > 2 && x < 3 && z > 2 && z < 3 ? NAN : 0.0; });
-  EXPECT_FALSE(is_clear_way(with_table, {1, kEyeHeight_m, 2.5}, {3.5, 1.3, 2.5}))
-      << "columns cannot tell a table from a wall";
-  EXPECT_TRUE(is_clear_way(FloorMap{}, eye, {1, 1.3, 30})) << "without a floor nothing is known to be in the way";
 }
 
 TEST(WallFade, DarkensAndComesBackGradually) {

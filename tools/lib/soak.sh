@@ -2,16 +2,14 @@
 # What tools/soak does, on the platform itself. usage: soak.sh PROBEWALK MINUTES KILLS DIR PACK [WALK OPTION…]
 set -uo pipefail
 probewalk=$1 minutes=$2 kills=$3 out=$4; shift 4
+lib=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 cd "$out" || exit 125
 rm -rf walk.log monado.log openxr.txt report
 fail() { echo "probewalk: $1" >&2; exit 125; }
 layers=/usr/share/openxr/1/api_layers/explicit.d
 ls $layers/*core_validation* >/dev/null 2>&1 || fail "install openxr-layer-corevalidation"
-manifest=/usr/share/openxr/1/openxr_monado.json
-[ -r $manifest ] || fail "install libopenxr1-monado and monado-service"
-
-# The directory's name is short: a socket's path may have 107 characters.
-export XDG_RUNTIME_DIR=$(mktemp -d /tmp/pwxr.XXXXXX) XR_RUNTIME_JSON=$manifest
+source "$lib/monado-service.sh"
+export XDG_RUNTIME_DIR=$runtime_dir XR_RUNTIME_JSON=$manifest
 service='' walk=''
 stop() {
   for process in $walk $service; do kill "$process" 2>/dev/null; done
@@ -25,11 +23,7 @@ start_service() {
   XRT_COMPOSITOR_NULL=1 SIMULATED_ENABLE=1 SIMULATED_LEFT=simple SIMULATED_RIGHT=simple XRT_NO_STDIN=1 \
     setpriv --pdeathsig KILL monado-service >>monado.log 2>&1 </dev/null &
   service=$!
-  for _ in $(seq 200); do
-    grep -q " 00010000 .* $XDG_RUNTIME_DIR/monado_comp_ipc\$" /proc/net/unix && return
-    sleep 0.1
-  done
-  fail "the Monado service did not answer within 20 s; see $out/monado.log"
+  await_monado $service "$out/monado.log"
 }
 said() { grep -c "$1" walk.log; }
 # Waits for the walk to say $1 for the $2nd time.

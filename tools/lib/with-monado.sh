@@ -8,10 +8,8 @@ compositor=$1; shift
 log=${PROBEWALK_MONADO_LOG:-/dev/null}
 fail() { echo "probewalk: $1" >&2; exit 125; }
 
+source "$(dirname "${BASH_SOURCE[0]}")/monado-service.sh"
 # Everything started here ends with this script, even when it is killed (pdeathsig).
-# The directory's name is short: a socket's path may have 107 characters.
-runtime_dir=$(mktemp -d /tmp/pwxr.XXXXXX)
-chmod 700 "$runtime_dir"
 started=()
 stop() {
   [ ${#started[@]} = 0 ] || kill "${started[@]}" 2>/dev/null || true
@@ -42,20 +40,10 @@ case $compositor in
   *) fail "compositor $compositor is neither null nor xvfb" ;;
 esac
 
-manifest=/usr/share/openxr/1/openxr_monado.json
-[ -r "$manifest" ] || fail "$manifest is missing; install libopenxr1-monado"
 "${service[@]}" setpriv --pdeathsig KILL monado-service >>"$log" 2>&1 </dev/null &
 monado=$!
 started=($monado "${started[@]}")
-
-# It answers once its socket listens (flag __SO_ACCEPTCON).
-listening() { grep -q " 00010000 .* $runtime_dir/monado_comp_ipc\$" /proc/net/unix; }
-for _ in $(seq 200); do
-  listening && break
-  kill -0 $monado 2>/dev/null || fail "the Monado service ended at once; see $log"
-  sleep 0.1
-done
-listening || fail "the Monado service did not answer within 20 s; see $log"
+await_monado $monado "$log"
 
 export XDG_RUNTIME_DIR=$runtime_dir XR_RUNTIME_JSON=$manifest
 # In the background, so that a signal to this script reaches CMD at once; bash makes such a command deaf to Ctrl-C.

@@ -100,12 +100,6 @@ Reading percentile_of(const Histogram& histogram, double p, std::uint64_t n_min,
   return {static_cast<double>(*histogram.percentile(p)) / scale, {}};
 }
 
-Histogram need_to_resident(const Run& run) {
-  Histogram histogram;
-  for (const std::int64_t duration : run.info.streaming.need_to_resident_ns) histogram.add(duration);
-  return histogram;
-}
-
 constexpr const char* kNotMeasured = "not measured, or it does not exist on this display";
 constexpr const char* kNothingAwaited = "no level had to be waited for in this run (n = 0)";
 
@@ -180,11 +174,11 @@ void add_other_keys(std::vector<GateKey>& keys) {
     if (rank.p != 0.5 && rank.p != 0.99) continue;
     keys.push_back({fmt::format("need_to_resident.{}", rank.name), fmt::format("need_to_resident_{}_ns", rank.name),
                     Unit::kTime, false, "", [p = rank.p, n_min = rank.n_min](const Run& run, const Summary&) {
-                      return percentile_of(need_to_resident(run), p, n_min, 1.0, kNothingAwaited);
+                      return percentile_of(need_to_resident_histogram(run.info.streaming), p, n_min, 1.0, kNothingAwaited);
                     }});
   }
   keys.push_back({"need_to_resident.max", "", Unit::kTime, false, "", [](const Run& run, const Summary&) {
-                    return percentile_of(need_to_resident(run), 1.0, 1, 1.0, kNothingAwaited);
+                    return percentile_of(need_to_resident_histogram(run.info.streaming), 1.0, 1, 1.0, kNothingAwaited);
                   }});
   keys.push_back({"frame_thread.p99", "frame_thread_p99_ns", Unit::kTime, false,
                   "time that streaming takes from the frame thread", [](const Run&, const Summary& s) {

@@ -97,9 +97,14 @@ const QuantitySummary& Summary::quantity(std::string_view name) const {
   return *found;
 }
 
-NeedToResident need_to_resident(const StreamingFacts& facts) {
+Histogram need_to_resident_histogram(const StreamingFacts& facts) {
   Histogram durations;
   for (const std::int64_t duration : facts.need_to_resident_ns) durations.add(duration);
+  return durations;
+}
+
+NeedToResident need_to_resident(const StreamingFacts& facts) {
+  const Histogram durations = need_to_resident_histogram(facts);
   NeedToResident need{.count = durations.count()};
   for (const PercentileRank& rank : percentile_ranks()) {
     if (rank.p == 0.5) need.p50_ns = durations.percentile(rank);
@@ -128,6 +133,7 @@ Summary Ledger::summary() const {
   std::uint64_t scaled_frames = 0;
   std::uint64_t budgeted = 0, within_budget = 0, levelled = 0, coarse = 0, stale_run = 0, coarse_run = 0;
   std::int64_t coarse_since = 0;  // display time of the run's first frame
+  std::uint64_t coarse_first = 0;
   for (std::size_t i = 0; i < frames_.size(); ++i) {
     const FrameRecord& frame = frames_[i];
     summary.bytes_uploaded += frame.bytes_uploaded;
@@ -149,11 +155,17 @@ Summary Ledger::summary() const {
       ++levelled;
       const bool is_coarse = frame.level_shown < frame.level_wanted;
       coarse += is_coarse ? 1 : 0;
-      if (is_coarse && coarse_run++ == 0) coarse_since = frame.predicted_display;
+      if (is_coarse && coarse_run++ == 0) {
+        coarse_since = frame.predicted_display;
+        coarse_first = frame.frame_id;
+      }
       if (coarse_run > 0) {  // what is coarse stays on the display until the next frame
         const std::int64_t shown_until = frame.predicted_display + (is_coarse ? frame.period : 0);
         summary.coarse_run_max_ns = std::max(summary.coarse_run_max_ns, shown_until - coarse_since);
-        summary.coarse_run_max = std::max(summary.coarse_run_max, coarse_run);
+        if (coarse_run > summary.coarse_run_max) {
+          summary.coarse_run_max = coarse_run;
+          summary.coarse_run_first = coarse_first;
+        }
       }
       if (!is_coarse) coarse_run = 0;
     }

@@ -71,6 +71,7 @@ struct Summary {
   std::uint64_t device_bytes_max = 0;
   std::optional<double> coarse_frame_fraction;  // level_shown < level_wanted, nothing shown included
   std::uint64_t coarse_run_max = 0;             // the most such frames after one another
+  std::uint64_t coarse_run_first = 0;           // frame_id of the first of these
   std::int64_t coarse_run_max_ns = 0;           // the longest time that such frames were shown without a break
   std::optional<std::int64_t> frame_thread_p99_ns;
 
@@ -94,6 +95,8 @@ class Ledger {
 };
 
 // How long rooms and levels took from first wanted to first drawable.
+// Of every level that was waited for: from first wanted to handed to the device.
+Histogram need_to_resident_histogram(const StreamingFacts& facts);
 struct NeedToResident {
   std::uint64_t count = 0;
   std::optional<std::int64_t> p50_ns, p99_ns;

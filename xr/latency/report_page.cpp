@@ -155,20 +155,6 @@ std::string words_of(const SourceStatistics& source) {
   return text;
 }
 
-// What could not be loaded when it was wanted; the first few by name.
-std::string words_of(const std::vector<LevelTrouble>& troubles) {
-  if (troubles.empty()) return {};
-  constexpr std::size_t kNamed = 5;
-  const auto lasting = std::count_if(troubles.begin(), troubles.end(), [](const auto& each) { return !each.overcome; });
-  std::string text = fmt::format("{} of {} never came after all", lasting, troubles.size());
-  for (std::size_t i = 0; i < std::min(kNamed, troubles.size()); ++i) {
-    const LevelTrouble& each = troubles[i];
-    text += fmt::format("; room {}, level {}, {} times{}: {}", each.room, each.level, each.tries,
-                        each.overcome ? ", then loaded" : "", each.reason);
-  }
-  return text + (troubles.size() > kNamed ? "; …" : "");
-}
-
 // Facts of one run that every report must state, in the order of the table.
 struct Fact {
   const char* name;
@@ -243,7 +229,6 @@ const std::vector<Fact>& facts() {
          return bytes > 0 ? in_bytes(bytes) : std::string("none set");
        }},
       {"web server", [](const Run& r, const Summary&) { return r.info.streaming.source ? words_of(*r.info.streaming.source) : ""; }},
-      {"failed loads", [](const Run& r, const Summary&) { return words_of(r.info.streaming.troubles); }},
   };
   return all;
 }

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <iterator>
-#include <map>
 #include <vector>
 
 #include "xr/latency/report_svg.h"
@@ -119,16 +118,16 @@ std::string streaming_svg(const Run& run, const Summary& summary) {
   return svg + "</svg>\n";
 }
 
-// What could not be loaded: room, level and why, with how often.
+// What could not be loaded when it was wanted, what never came first.
 std::vector<std::string> failures(const StreamingFacts& facts) {
-  std::map<std::string, std::size_t> times;
-  for (const LevelLoad& load : facts.loads) {
-    if (load.failure.empty() || load.failure == kNotNeededAnyMore) continue;
-    ++times[fmt::format("room {}, level {}: {}", load.room, load.level, load.failure)];
-  }
   std::vector<std::string> lines;
-  for (const auto& [text, count] : times) {
-    lines.push_back(count > 1 ? fmt::format("{} ({} times)", text, count) : text);
+  for (const bool overcome : {false, true}) {
+    for (const LevelTrouble& trouble : facts.troubles) {
+      if (trouble.overcome != overcome) continue;
+      lines.push_back(fmt::format("room {}, level {}: {} ({} {}{})", trouble.room, trouble.level, trouble.reason,
+                                  trouble.tries, trouble.tries == 1 ? "time" : "times",
+                                  overcome ? ", then loaded" : ""));
+    }
   }
   return lines;
 }
@@ -144,23 +143,6 @@ std::string milliseconds(std::int64_t ns) {
 
 }  // namespace
 
-CoarseRun longest_coarse_run(const Ledger& ledger) {
-  const auto& frames = ledger.frames();
-  CoarseRun longest, run;
-  for (std::size_t i = ledger.first_counted(); i < frames.size(); ++i) {
-    if (!is_coarse(frames[i])) {
-      run = {};
-      continue;
-    }
-    if (run.frames++ == 0) run.first = i;
-    // Until the next frame began, which may be finer; the last frame of all counts no time.
-    const std::size_t next = std::min(i + 1, frames.size() - 1);
-    run.length_ns = frames[next].wait.end - frames[run.first].wait.end;
-    if (run.frames > longest.frames) longest = run;
-  }
-  return longest;
-}
-
 std::string streaming_section(const Run& run, const Summary& summary) {
   const auto& frames = run.ledger.frames();
   if (std::ranges::none_of(frames, has_levels)) return {};
@@ -173,13 +155,12 @@ std::string streaming_section(const Run& run, const Summary& summary) {
          : share > 0.05 ? "bad"
                         : "");
   }
-  const CoarseRun longest = longest_coarse_run(run.ledger);
-  tile(html, fmt::format("{} <small>frames</small>", longest.frames),
-       longest.frames == 0 ? std::string("the longest run of coarse frames")
-                           : fmt::format("the longest run of coarse frames: {} ms, from frame {}",
-                                         in_ms(longest.length_ns), frames[longest.first].frame_id));
-  Histogram need;
-  for (const std::int64_t duration : facts.need_to_resident_ns) need.add(duration);
+  tile(html, fmt::format("{} <small>frames</small>", summary.coarse_run_max),
+       summary.coarse_run_max == 0
+           ? std::string("the longest run of coarse frames")
+           : fmt::format("the longest run of coarse frames, from frame {}; the longest in time took {} ms",
+                         summary.coarse_run_first, in_ms(summary.coarse_run_max_ns)));
+  const Histogram need = need_to_resident_histogram(facts);
   if (need.count() > 0) {
     tile(html, milliseconds(*need.percentile(0.5)), fmt::format("p50 from need to resident (n = {})", need.count()));
     if (need.count() >= 100) {

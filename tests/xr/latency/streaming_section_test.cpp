@@ -29,15 +29,16 @@ std::string section(const probewalk::Run& run) {
   return streaming_section(run, run.ledger.summary());
 }
 
-TEST(StreamingSection, FindsTheLongestCoarseRun) {
-  const CoarseRun longest = longest_coarse_run(coarse_between(40, 47).ledger);
-  EXPECT_EQ(longest.frames, 7u);
-  EXPECT_EQ(longest.first, 40u);
-  EXPECT_EQ(longest.length_ns, 7 * kPeriod);
-  EXPECT_EQ(longest_coarse_run(coarse_between(0, 0).ledger).frames, 1u);
-  EXPECT_EQ(longest_coarse_run(coarse_between(5, 20, 30).ledger).frames, 0u) << "warm-up is left out";
-  EXPECT_EQ(longest_coarse_run(coarse_between(90, 100).ledger).length_ns, 9 * kPeriod) << "no frame after the last";
-  EXPECT_EQ(longest_coarse_run(Ledger{}).frames, 0u);
+TEST(StreamingSection, TellsOfTheLongestCoarseRunThatTheLedgerFinds) {
+  const auto summary_of = [](const probewalk::Run& run) { return run.ledger.summary(); };
+  const Summary longest = summary_of(coarse_between(40, 47));
+  EXPECT_EQ(longest.coarse_run_max, 7u);
+  EXPECT_EQ(longest.coarse_run_first, 40u);
+  EXPECT_EQ(longest.coarse_run_max_ns, 7 * kPeriod);
+  EXPECT_EQ(summary_of(coarse_between(0, 0)).coarse_run_max, 1u);
+  EXPECT_EQ(summary_of(coarse_between(5, 20, 30)).coarse_run_max, 0u) << "warm-up is left out";
+  EXPECT_EQ(summary_of(coarse_between(90, 100)).coarse_run_max_ns, 10 * kPeriod) << "the last frame is shown, too";
+  EXPECT_EQ(Ledger{}.summary().coarse_run_max, 0u);
 }
 
 TEST(StreamingSection, TellsSharesTimesBytesAndBudget) {
@@ -45,24 +46,19 @@ TEST(StreamingSection, TellsSharesTimesBytesAndBudget) {
   run.info.streaming.need_to_resident_ns = {5 * kMs, 90 * kMs, 6 * kMs};
   run.info.streaming.device_budget_bytes = 2 << 20;
   EXPECT_THAT(section(run),
-              AllOf(HasSubstr("8.0 %"), HasSubstr("70.0 ms, from frame 40"), HasSubstr("(n = 3)"),
-                    HasSubstr("p99 needs 100 levels"), HasSubstr("of a budget of 2.0 MiB"), HasSubstr("class=\"dark\""),
-                    HasSubstr("class=\"coarse\""), Not(HasSubstr("could be loaded"))));
+              AllOf(HasSubstr("8.0 %"), HasSubstr("from frame 40; the longest in time took 70.0 ms"),
+                    HasSubstr("(n = 3)"), HasSubstr("p99 needs 100 levels"), HasSubstr("of a budget of 2.0 MiB"),
+                    HasSubstr("class=\"dark\""), HasSubstr("class=\"coarse\""), Not(HasSubstr("could be loaded"))));
 }
 
-TEST(StreamingSection, NamesWhatCouldNotBeLoadedAndNotWhatNobodyWanted) {
+TEST(StreamingSection, NamesWhatCouldNotBeLoadedWhatNeverCameFirst) {
   auto run = coarse_between(40, 47);
-  LevelLoad load;
-  load.room = "a<b";
-  load.level = 2;
-  load.failure = "chunk is damaged";
-  run.info.streaming.loads = {load, load, {}};
-  load.room = "hall";
-  load.failure = kNotNeededAnyMore;
-  run.info.streaming.loads.push_back(load);
-  EXPECT_THAT(section(run),
-              AllOf(HasSubstr("Not everything could be loaded"),
-                    HasSubstr("room a&lt;b, level 2: chunk is damaged (2 times)"), Not(HasSubstr("hall"))));
+  run.info.streaming.troubles = {{"hall", 1, 1, true, "the server was away"}, {"a<b", 2, 2, false, "chunk is damaged"}};
+  const std::string html = section(run);
+  EXPECT_THAT(html, AllOf(HasSubstr("Not everything could be loaded"),
+                          HasSubstr("room a&lt;b, level 2: chunk is damaged (2 times)"),
+                          HasSubstr("room hall, level 1: the server was away (1 time, then loaded)")));
+  EXPECT_LT(html.find("a&lt;b"), html.find("room hall"));
 }
 
 TEST(StreamingSection, IsNoneWhereNothingIsStreamed) {
