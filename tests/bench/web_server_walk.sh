@@ -47,12 +47,12 @@ fetch() { # PATH: prints ms to the first byte, ms in all, bytes
   exec 3>&-
   echo "$(((first - begin) / 1000000)) $(((end - begin) / 1000000)) $bytes"
 }
-biggest=$(ls -S "$pack/chunks" | head -n 1)
+biggest=$(ls -S "$pack/chunks" | sed -n 1p)  # not head: it would end ls, which pipefail takes for a failure
 read -r first _ _ < <(fetch /nothing)
 read -r _ all bytes < <(fetch "/chunks/$biggest")
 echo "line: first byte after $first ms; $bytes bytes in $all ms"
 
-device_bytes=$("$bin/probewalk" info "$pack" --json | sed -n 's/^  "bytes_device": \([0-9]*\).*/\1/p' | head -n 1)
+device_bytes=$("$bin/probewalk" info "$pack" --json | sed -n 's/^  "bytes_device": \([0-9]*\).*/\1/p' | sed -n 1p)
 budget=$((device_bytes / part >> 20)); [ $budget -gt 0 ] || budget=1
 echo "pack: $((device_bytes >> 20)) MiB on the device; budget $budget MiB"
 "$bin/probewalk" walk "http://127.0.0.1:$port" --display offscreen --realtime --seconds "$seconds" \
@@ -60,7 +60,7 @@ echo "pack: $((device_bytes >> 20)) MiB on the device; budget $budget MiB"
   2>"$out/notes" ||
   { tail -n 5 "$out/notes"; exit 1; }
 
-number() { sed -n "s/^ *\"$1\": \([^,]*\),*\$/\1/p" "$out/report/summary.json" | head -n 1; }
+number() { sed -n "s/^ *\"$1\": \([^,]*\),*\$/\1/p" "$out/report/summary.json" | sed -n 1p; }
 for key in frames missed coarse_frame_fraction need_to_resident_n need_to_resident_p50_ns need_to_resident_p99_ns \
   frame_thread_p99_ns device_bytes_max device_budget_bytes chunks requests failed_requests damaged bytes; do
   echo "$key: $(number $key)"
