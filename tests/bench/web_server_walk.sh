@@ -34,7 +34,9 @@ mkfifo "$out/nginx/stay"
 "$bin/slow_link" $port $server_port "$rate" "$latency" <"$out/nginx/stay" & link_pid=$!
 exec 9>"$out/nginx/stay"
 trap 'exec 9>&-; kill $nginx_pid $link_pid 2>/dev/null || true' EXIT
-for _ in $(seq 50); do (exec 3<>/dev/tcp/127.0.0.1/$port) 2>/dev/null && break; sleep 0.1; done
+for each in $server_port $port; do
+  for _ in $(seq 50); do (exec 3<>/dev/tcp/127.0.0.1/$each) 2>/dev/null && break; sleep 0.1; done
+done
 
 # The line, measured: time to the first byte, and the rate of one big file.
 fetch() { # PATH: prints ms to the first byte, ms in all, bytes
