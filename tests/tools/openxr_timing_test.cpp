@@ -182,7 +182,8 @@ TEST(OpenXrTiming, AFrameWithoutALatePoseIsShownWithTheEarlyOneAndSaysSo) {
     EXPECT_EQ(frame.early_pose, (i + 1) % 7 == 0) << i;
     EXPECT_EQ(run.ended[i].layers, 1) << i;
     if (frame.early_pose) {
-      EXPECT_EQ(run.ended[i].late_mm, run.ended[i].early_mm) << i;
+      // The layer works each out of its own sums of floats, a few micrometres apart at most.
+      EXPECT_NEAR(run.ended[i].late_mm, run.ended[i].early_mm, 0.005) << i;
     }
     early += frame.early_pose ? 1 : 0;
   }
