@@ -93,6 +93,7 @@ struct FrameRenderer::Impl {
   }
   ~Impl() {
     if (lookups_to_come.valid()) lookups_to_come.wait();
+    if (guides_to_come.valid()) guides_to_come.wait();
     // Not wait_for: a lost device must not throw here.
     vkDeviceWaitIdle(device.handle());
     slots.clear();
@@ -133,6 +134,26 @@ struct FrameRenderer::Impl {
     }
     if (!wants_lookups && lookups && completed_frame() >= last_lookups_frame) lookups.reset();
     return picture;
+  }
+
+  // What the next frame's guides are drawn by; null: it has none, or must go without.
+  GuidePass* choose_guides(bool wanted) {
+    if (guides_to_come.valid() && guides_to_come.wait_for(std::chrono::seconds(0)) == std::future_status::ready) {
+      guides = guides_to_come.get();
+    }
+    if (wanted) {
+      last_guides_frame = next_frame;
+      if (!guides && !guides_to_come.valid()) {
+        guides_to_come = std::async(std::launch::async, [this] {
+          return std::make_unique<GuidePass>(device, picture.tracer.distance(), options.target_format, kFrameSlots);
+        });
+      }
+      return guides.get();
+    }
+    if (guides && next_frame > last_guides_frame + kGuideRest_frames && completed_frame() >= last_guides_frame) {
+      guides.reset();
+    }
+    return nullptr;
   }
 
   void submit(std::span<const VkCommandBuffer> buffers, VkSemaphore wait_before, VkSemaphore signal_after) {
@@ -196,6 +217,10 @@ struct FrameRenderer::Impl {
   std::unique_ptr<const Passes> lookups;
   std::future<std::unique_ptr<const Passes>> lookups_to_come;
   std::uint64_t last_lookups_frame = 0;
+  // From the first frame with guides until long after the last.
+  std::unique_ptr<GuidePass> guides;
+  std::future<std::unique_ptr<GuidePass>> guides_to_come;
+  std::uint64_t last_guides_frame = 0;
   const Passes* used = &picture;  // of the frame recorded last
   GpuClock clock;
   VkSemaphore timeline;
@@ -275,7 +300,7 @@ void FrameRenderer::set_timed(bool timed) {
   impl_->is_timed = timed;
 }
 
-void FrameRenderer::record(const FrameTarget& target) {
+void FrameRenderer::record(const FrameTarget& target, const Guides& guides) {
   Impl& impl = *impl_;
   const TracerOptions& tracer = impl.options.tracer;
   if (target.format != impl.options.target_format || target.depth_format != impl.options.depth_format ||
@@ -321,6 +346,10 @@ void FrameRenderer::record(const FrameTarget& target) {
   if (slot.is_timed) slot.timer.begin(slot.commands[kResolve], kResolve);
   passes.resolve.record(slot.commands[kResolve], constants, target, slot.layer_views);
   if (passes.depth) passes.depth->record(slot.commands[kResolve], constants, target, slot.depth_views);
+  if (GuidePass* guide_pass = impl.choose_guides(guides.any())) {
+    guide_pass->record(slot.commands[kResolve], impl.slot_index(), constants, passes.tracer.distance(), target,
+                       slot.layer_views, guides);
+  }
   if (slot.is_timed) slot.timer.end(slot.commands[kResolve], kResolve);
   check(vkEndCommandBuffer(slot.commands[kResolve]), "vkEndCommandBuffer");
   if (slot.is_timed) {
