@@ -24,8 +24,9 @@ namespace {
 
 // Each timed pass has a command buffer of its own (see PassTimer).
 enum Pass : std::uint32_t { kTrace, kResolve, kPasses };
-constexpr std::uint32_t kUploadCommands = kPasses;
-constexpr std::uint32_t kCommandBuffers = kPasses + 1;
+constexpr std::uint32_t kTimesCommands = kPasses;  // submitted after the passes, of frames that are timed
+constexpr std::uint32_t kUploadCommands = kPasses + 1;
+constexpr std::uint32_t kCommandBuffers = kPasses + 2;
 
 constexpr std::size_t kTimesKept = 64;
 
@@ -59,7 +60,8 @@ struct FrameSlot {
   PassTimer timer;
   std::vector<VkImageView> layer_views, depth_views;  // of the target
   std::uint64_t frame = 0;                            // submitted last from this slot
-  std::uint64_t last_work = 0;                        // timeline value of the slot's last submit
+  std::uint64_t frame_work = 0;                       // timeline value of that
+  std::uint64_t last_work = 0;                        // of the slot's last submit
   bool is_timed = true;                               // the frame recorded last
   bool has_untaken_times = false;
 };
@@ -179,21 +181,22 @@ struct FrameRenderer::Impl {
   }
 
   void collect_times() {
+    std::uint64_t done = 0;
+    check(vkGetSemaphoreCounterValue(device.handle(), timeline, &done), "vkGetSemaphoreCounterValue");
     for (std::uint64_t age = kFrameSlots; age >= 1; --age) {  // the oldest frame first
-      collect_times(slots[(next_frame + kFrameSlots - age) % kFrameSlots]);
+      FrameSlot& aged = slots[(next_frame + kFrameSlots - age) % kFrameSlots];
+      if (aged.has_untaken_times && aged.frame_work <= done) collect_times(aged);
     }
   }
 
   void collect_times(FrameSlot& finished) {
-    if (!finished.has_untaken_times) return;
-    const auto trace = finished.timer.read(kTrace, clock);
-    const auto resolved = finished.timer.read(kResolve, clock);
-    if (!trace || !resolved) return;
+    const GpuInterval trace = finished.timer.read(kTrace, clock);
+    const GpuInterval resolved = finished.timer.read(kResolve, clock);
     finished.has_untaken_times = false;
     times.push_back({finished.frame,
-                     *trace,
-                     *resolved,
-                     {trace->begin_ns, resolved->end_ns},
+                     trace,
+                     resolved,
+                     {trace.begin_ns, resolved.end_ns},
                      clock.calibrated(),
                      clock.max_deviation_ns()});
     if (times.size() > kTimesKept) times.pop_front();
@@ -349,6 +352,11 @@ void FrameRenderer::record(const FrameTarget& target, const Guides& guides) {
   }
   if (slot.is_timed) slot.timer.end(slot.commands[kResolve], kResolve);
   check(vkEndCommandBuffer(slot.commands[kResolve]), "vkEndCommandBuffer");
+  if (slot.is_timed) {
+    begin_commands(slot.commands[kTimesCommands]);
+    slot.timer.bring(slot.commands[kTimesCommands]);
+    check(vkEndCommandBuffer(slot.commands[kTimesCommands]), "vkEndCommandBuffer");
+  }
   impl.target = target;
   impl.is_recorded = true;
   impl.is_written = false;
@@ -382,8 +390,10 @@ std::uint64_t FrameRenderer::submit() {
   Impl& impl = *impl_;
   if (!impl.is_recorded || !impl.is_written) throw std::logic_error("a frame is submitted after record and write");
   FrameSlot& slot = impl.slot();
-  impl.submit({slot.commands.data(), kPasses}, impl.target.wait_before, impl.target.signal_after);
+  const std::uint32_t buffers = slot.is_timed ? kTimesCommands + 1 : kPasses;
+  impl.submit({slot.commands.data(), buffers}, impl.target.wait_before, impl.target.signal_after);
   slot.frame = impl.next_frame;
+  slot.frame_work = slot.last_work;
   slot.has_untaken_times = slot.is_timed;
   impl.is_recorded = impl.is_written = false;
   return impl.next_frame++;

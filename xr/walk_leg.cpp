@@ -163,8 +163,7 @@ void WalkLeg::book(FrameRecord& record, std::uint64_t drawn) {
   record.pipelines_built = built - std::exchange(pipelines_built_, built);
   book_.add(record, drawn);
   if (books_.overlay.is_shown()) note_for_overlay(record);
-  // Between the frames: asked for time stamps, some drivers (lavapipe) wait for the frames in flight, and a runtime's
-  // answers take their time too.
+  // Between the frames: a runtime's answers take their time.
   book_.add_ledger_time(stamped([&] { take_late_answers(); }));
 }
 
