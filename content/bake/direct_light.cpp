@@ -1,209 +1,149 @@
 #include "content/bake/direct_light.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <numbers>
 
 #include "content/bake/patterns.h"
-#include "content/bake/surface_point.h"
 
 namespace probewalk {
 namespace {
 
-// A light fades out between these shares of all the light that arrives unshadowed: less is not worth a ray.
-constexpr float kFadeStart = 0.010f;
-constexpr float kFadeEnd = 0.003f;
-constexpr float kRankFade = 1.5f;  // the weakest light with a ray is full only this far above the first without
-constexpr float kLeastSay = 1e-3f;  // share of a faded light's vote on what those without a ray are worth
-constexpr float kFarAway_m = 1e6f;
-
-float smooth_step(float low, float high, float x) {
-  const float t = std::clamp((x - low) / (high - low), 0.0f, 1.0f);
-  return t * t * (3.0f - 2.0f * t);
-}
-
-struct Receiver {
-  glm::vec3 position_m, geometric_normal, normal;
-  // Cosine at the surface for a unit direction towards light; 0 behind either normal.
-  float cosine(glm::vec3 to_light) const {
-    return glm::dot(geometric_normal, to_light) > 0.0f ? std::max(glm::dot(normal, to_light), 0.0f) : 0.0f;
-  }
-};
+// A ray that stands for a choice of emitters carries this share of all light at least (less is not worth one), and at
+// most where kMostShadowRays allow: it is how much one such ray's yes or no changes the picture.
+constexpr float kLeastShare = 0.003f;
+constexpr float kMostShare = 0.02f;
+constexpr float kDoubtfulRays = 2.0f;
+constexpr std::uint32_t kListedSeed = 0x11u, kDoubtfulSeed = 0x12u, kFarSeed = 0x13u;
 
 struct Candidate {
-  float estimate = 0.0f;  // luminance of the unshadowed irradiance
-  glm::vec3 irradiance{0.0f};
-  const PunctualEmitter* light = nullptr;  // this or
-  const EmissivePatch* patch = nullptr;    // this
+  std::uint32_t emitter = 0;
+  float weight = 0.0f;  // about the light that arrives (lux)
+  glm::vec3 unshadowed{0.0f};
   int rays = 1;
 };
 
-// The strongest candidates, strongest first; one more than there are rays, to know what the first left out is worth.
-class Strongest {
- public:
-  int count() const { return count_; }
-  Candidate& operator[](int k) { return slots_[k]; }
-  // Below this a candidate cannot enter.
-  float threshold() const { return count_ == int(slots_.size()) ? slots_.back().estimate : 0.0f; }
-  void offer(const Candidate& candidate) {
-    if (!(candidate.estimate > threshold())) return;
-    int place = count_ < int(slots_.size()) ? count_++ : count_ - 1;
-    for (; place > 0 && slots_[place - 1].estimate < candidate.estimate; --place) slots_[place] = slots_[place - 1];
-    slots_[place] = candidate;
+float unit_float(std::uint32_t word) {
+  return static_cast<float>(word >> 8) * (1.0f / 16777216.0f);
+}
+
+// The weight from which on a candidate has a ray for certain, so that the expected number of rays is `rays`; the
+// others' chance is their weight over it.
+float certain_weight(const std::vector<Candidate>& candidates, int rays) {
+  float threshold = 1e30f;
+  for (;;) {
+    float small = 0.0f;
+    int certain = 0;
+    for (const Candidate& candidate : candidates) {
+      if (candidate.weight >= threshold) {
+        ++certain;
+      } else {
+        small += candidate.weight;
+      }
+    }
+    if (certain >= rays) return threshold;
+    const float next = small / static_cast<float>(rays - certain);
+    if (!(next < threshold)) return threshold;
+    threshold = next;
   }
-
- private:
-  std::array<Candidate, kShadowRays + 1> slots_;
-  int count_ = 0;
-};
-
-// KHR_lights_punctual: distance, range window and cone.
-float attenuation(const Light& light, glm::vec3 to_light, float distance_m) {
-  float value = 1.0f / std::max(distance_m * distance_m, 1e-4f);
-  if (light.range_m > 0.0f) {
-    const float ratio = distance_m / light.range_m;
-    value *= std::clamp(1.0f - ratio * ratio * ratio * ratio, 0.0f, 1.0f);
-  }
-  if (light.kind == Light::Kind::kSpot) {
-    const float inner = std::cos(light.inner_cone_rad), outer = std::cos(light.outer_cone_rad);
-    const float cone = std::clamp((glm::dot(light.direction, -to_light) - outer) / std::max(0.001f, inner - outer), 0.0f, 1.0f);
-    value *= cone * cone;
-  }
-  return value;
-}
-
-glm::vec3 unshadowed(const Light& light, const Receiver& receiver) {
-  if (light.kind == Light::Kind::kDirectional) return light.intensity * receiver.cosine(-light.direction);
-  const glm::vec3 offset = light.position_m - receiver.position_m;
-  const float distance_m = glm::length(offset);
-  if (!(distance_m > 0.0f)) return glm::vec3(0.0f);
-  const float cosine = receiver.cosine(offset / distance_m);
-  return cosine > 0.0f ? light.intensity * (cosine * attenuation(light, offset / distance_m, distance_m))
-                       : glm::vec3(0.0f);
-}
-
-// Irradiance from one sample of a patch. Its own extent softens the inverse square nearby (a disk seen along its axis).
-glm::vec3 unshadowed(const EmissivePatch& patch, const EmissivePatch::Sample& sample, const Receiver& receiver) {
-  const glm::vec3 offset = sample.position_m - receiver.position_m;
-  const float square = glm::dot(offset, offset);
-  if (!(square > 0.0f)) return glm::vec3(0.0f);
-  const glm::vec3 to_light = offset / std::sqrt(square);
-  const float cosine = receiver.cosine(to_light);
-  if (!(cosine > 0.0f)) return glm::vec3(0.0f);
-  const float at_light = -glm::dot(sample.normal, to_light);
-  if (at_light > 0.0f ? !sample.front_open : !sample.back_open) return glm::vec3(0.0f);
-  return sample.weight *
-         (cosine * std::abs(at_light) / (square + patch.sample_area_m2 * std::numbers::inv_pi_v<float>));
-}
-
-glm::vec3 unshadowed(const EmissivePatch& patch, const Receiver& receiver) {
-  glm::vec3 sum(0.0f);
-  for (const EmissivePatch::Sample& sample : patch.samples) sum += unshadowed(patch, sample, receiver);
-  return sum;
-}
-
-// No point of the patch can send more than this.
-float upper_bound(const EmissivePatch& patch, const Receiver& receiver) {
-  const glm::vec3 offset = patch.centre_m - receiver.position_m;
-  if (glm::dot(offset, receiver.geometric_normal) < -patch.radius_m) return 0.0f;
-  const float nearest_m = std::max(glm::length(offset) - patch.radius_m, 0.0f);
-  return patch.power_cd / (nearest_m * nearest_m + patch.sample_area_m2 * std::numbers::inv_pi_v<float>);
 }
 
 // Rays that are left over go where they soften a shadow most.
-void share_out_rays(Strongest& strongest, int count) {
-  for (int spare = kShadowRays - count; spare > 0; --spare) {
+void share_out_rays(const EmitterLight& light, std::vector<Candidate>& candidates, float certain, int spare) {
+  for (; spare > 0; --spare) {
     Candidate* best = nullptr;
     float best_gain = 0.0f;
-    for (int k = 0; k < count; ++k) {
-      Candidate& candidate = strongest[k];
-      if (!candidate.patch || candidate.rays >= kPatchSamples) continue;
-      const float gain = candidate.estimate / static_cast<float>(candidate.rays * candidate.rays);
-      if (gain > best_gain) {
-        best_gain = gain;
-        best = &candidate;
-      }
+    for (Candidate& candidate : candidates) {
+      if (candidate.weight < certain || !light.is_patch(candidate.emitter) || candidate.rays >= kPatchSamples) continue;
+      const float gain = candidate.weight / static_cast<float>(candidate.rays * candidate.rays);
+      if (gain > best_gain) best_gain = gain, best = &candidate;
     }
     if (!best) return;
     ++best->rays;
   }
 }
 
-bool reaches(const RayScene& rays, glm::vec3 origin, glm::vec3 target, float stop_short_m) {
-  const glm::vec3 offset = target - origin;
-  const float distance_m = glm::length(offset);
-  const float far_m = distance_m * (1.0f - 1e-4f) - stop_short_m;
-  return far_m <= 0.0f || !rays.occluded(origin, offset / distance_m, 0.0f, far_m);
-}
-
-float visible_fraction(const RayScene& rays, const PunctualEmitter& emitter, glm::vec3 origin, std::uint64_t& cast) {
-  ++cast;
-  if (emitter.light.kind == Light::Kind::kDirectional) {
-    return rays.occluded(origin, -emitter.light.direction, 0.0f, kFarAway_m) ? 0.0f : 1.0f;
-  }
-  return reaches(rays, origin, emitter.light.position_m, emitter.lamp_radius_m) ? 1.0f : 0.0f;
-}
-
-float visible_fraction(const RayScene& rays, const EmissivePatch& patch, int count, const Receiver& receiver,
-                       glm::vec3 origin, std::uint64_t& cast) {
-  float seen = 0.0f, all = 0.0f;
-  for (int k = 0; k < kPatchSamples && (k < count || all == 0.0f); ++k) {
-    const float weight = luminance(unshadowed(patch, patch.samples[k], receiver));
-    if (!(weight > 0.0f)) continue;
-    all += weight;
-    ++cast;
-    if (reaches(rays, origin, patch.samples[k].position_m, ray_offset_m(patch.samples[k].position_m))) seen += weight;
-  }
-  return all > 0.0f ? seen / all : 0.0f;
-}
-
 }  // namespace
+
+DirectLight::DirectLight(const Scene& scene, const RayScene& rays, const CachePoints& points, Progress& progress)
+    : emitters_(find_emitters(scene, rays)), light_(emitters_, rays), grid_(light_, points, kShadowRays, progress) {
+  float sum = 0.0f;
+  for (std::uint32_t e = 0; e < light_.count(); ++e) power_sums_.push_back(sum += light_.power(e));
+}
+
+std::uint32_t DirectLight::pick_by_power(float at) const {
+  const auto found = std::upper_bound(power_sums_.begin(), power_sums_.end(), at * power_sums_.back());
+  return std::uint32_t(std::min<std::ptrdiff_t>(found - power_sums_.begin(), std::ptrdiff_t(power_sums_.size()) - 1));
+}
 
 glm::vec3 DirectLight::irradiance(glm::vec3 position_m, glm::vec3 geometric_normal, glm::vec3 normal,
                                   std::uint64_t& rays_cast) const {
   const Receiver receiver{position_m, geometric_normal, normal};
-  Strongest strongest;
-  glm::vec3 arriving(0.0f);  // unshadowed, from all
-  for (const PunctualEmitter& emitter : emitters_.lights) {
-    const glm::vec3 value = unshadowed(emitter.light, receiver);
-    arriving += value;
-    strongest.offer({luminance(value), value, &emitter, nullptr, 1});
-  }
-  for (const EmissivePatch& patch : emitters_.patches) {
-    if (!(upper_bound(patch, receiver) > strongest.threshold())) continue;
-    const glm::vec3 value = unshadowed(patch, receiver);
-    arriving += value;
-    strongest.offer({luminance(value), value, nullptr, &patch, 1});
-  }
-  if (strongest.count() == 0) return glm::vec3(0.0f);
-
+  const LightGrid::Nearby nearby = grid_.at(position_m, geometric_normal);
+  thread_local std::vector<Candidate> candidates;
+  candidates.clear();
   float total = 0.0f;
-  for (int k = 0; k < strongest.count(); ++k) total += strongest[k].estimate;
-  const float left_out = strongest.count() > kShadowRays ? strongest[kShadowRays].estimate : 0.0f;
-  int count = std::min(strongest.count(), kShadowRays);
-  while (count > 1 && strongest[count - 1].estimate <= kFadeEnd * total) --count;
-  share_out_rays(strongest, count);
-
-  const glm::vec3 origin = position_m + geometric_normal * ray_offset_m(position_m);
-  glm::vec3 sum(0.0f), traced(0.0f);
-  float seen_weight = 0.0f, weights = 0.0f;
-  for (int k = 0; k < count; ++k) {
-    const Candidate& candidate = strongest[k];
-    float keep = smooth_step(kFadeEnd, kFadeStart, candidate.estimate / total);
-    if (left_out > 0.0f) keep *= smooth_step(1.0f, kRankFade, candidate.estimate / left_out);
-    const float seen = candidate.light
-                           ? visible_fraction(rays_, *candidate.light, origin, rays_cast)
-                           : visible_fraction(rays_, *candidate.patch, candidate.rays, receiver, origin, rays_cast);
-    sum += candidate.irradiance * (keep * seen);
-    traced += candidate.irradiance * keep;
-    // Rays that fade still speak where none is full: equal lights must not fade one another out.
-    const float weight = candidate.estimate * (keep + kLeastSay);
-    seen_weight += weight * seen;
-    weights += weight;
+  for (const LightGrid::Listed& listed : nearby.listed) {
+    const glm::vec3 value = light_.unshadowed(listed.emitter, receiver);
+    const float weight = strongest_channel(value) * listed.visible;
+    if (!(weight > 0.0f)) continue;
+    candidates.push_back({listed.emitter, weight, value, 1});
+    total += weight;
   }
-  // What has no ray of its own is as visible as what has.
-  return sum + glm::max(arriving - traced, glm::vec3(0.0f)) * (weights > 0.0f ? seen_weight / weights : 0.0f);
+  const float doubtful_lux = nearby.doubtful.empty() ? 0.0f : nearby.doubtful.back().sum;
+  const float rest_lux = doubtful_lux + nearby.far_lux;
+  if (!(total + rest_lux > 0.0f)) return glm::vec3(0.0f);
+
+  float certain = 0.0f;
+  if (candidates.size() > std::size_t(kShadowRays)) {
+    certain = certain_weight(candidates, kShadowRays);
+    if (certain > kMostShare * total) {
+      certain = std::max(certain_weight(candidates, kMostShadowRays), kMostShare * total);
+    }
+    certain = std::max(certain, kLeastShare * total);
+  }
+  float expected_rays = 0.0f;
+  for (const Candidate& candidate : candidates) {
+    expected_rays += candidate.weight >= certain ? 1.0f : candidate.weight / certain;
+  }
+  share_out_rays(light_, candidates, certain, kShadowRays - static_cast<int>(std::ceil(expected_rays)));
+
+  glm::vec3 sum(0.0f);
+  // Systematic sampling: a ray each time the weak ones' running sum passes another `certain`.
+  float passed = unit_float(mix_place(position_m, kListedSeed)) * certain;
+  for (const Candidate& candidate : candidates) {
+    float scale = 1.0f;
+    if (candidate.weight < certain) {
+      passed += candidate.weight;
+      if (passed < certain) continue;
+      passed -= certain;
+      scale = certain / candidate.weight;
+    }
+    sum += candidate.unshadowed *
+           (scale * light_.visible_fraction(candidate.emitter, candidate.rays, receiver, rays_cast));
+  }
+  const auto add_chosen = [&](std::uint32_t emitter, float scale) {
+    const glm::vec3 value = light_.unshadowed(emitter, receiver);
+    if (!(strongest_channel(value) > 0.0f)) return;
+    sum += value * (scale * light_.visible_fraction(emitter, 1, receiver, rays_cast));
+  };
+  // The rest hardly ever sends anything, so it gets few rays, however much it could send.
+  const float step = std::max({certain, kLeastShare * (total + rest_lux), rest_lux / kDoubtfulRays});
+  for (float at = unit_float(mix_place(position_m, kDoubtfulSeed)) * step; at < doubtful_lux; at += step) {
+    const auto found = std::upper_bound(nearby.doubtful.begin(), nearby.doubtful.end(), at,
+                                        [](float value, const LightGrid::Doubtful& d) { return value < d.sum; });
+    const std::size_t k = std::min(std::size_t(found - nearby.doubtful.begin()), nearby.doubtful.size() - 1);
+    const float before = k > 0 ? nearby.doubtful[k - 1].sum : 0.0f;
+    add_chosen(nearby.doubtful[k].emitter, step / (nearby.doubtful[k].sum - before));
+  }
+  if (nearby.far_lux > 0.0f) {
+    const std::uint32_t word = mix_place(position_m, kFarSeed);
+    const float chance = std::min(nearby.far_lux / step, 1.0f);
+    if (unit_float(word) < chance) {
+      const std::uint32_t emitter = pick_by_power(unit_float(mix_bits(word, kFarSeed)));
+      if (!grid_.lists(nearby, emitter)) add_chosen(emitter, power_sums_.back() / (light_.power(emitter) * chance));
+    }
+  }
+  return sum;
 }
 
 }  // namespace probewalk

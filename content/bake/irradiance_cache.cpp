@@ -14,8 +14,6 @@
 namespace probewalk {
 namespace {
 
-// More points than this take longer to gather than they add; the spacing is raised instead.
-constexpr std::size_t kMaxPoints = 300000;
 // The first bounce carries the windows and lamps, and is gathered with more rays than the later, smoother ones.
 constexpr int kFirstGather = 2;
 int rays_of_bounce(int samples, int bounce) {
@@ -37,8 +35,8 @@ void add(Values& to, const Values& values) {
 
 }  // namespace
 
-// Light that one set of values, reflected once, and optionally the emitters that are not sampled directly, send to every
-// cache point.
+// Light that one set of values, reflected once, and optionally the emitters that are not sampled directly, send to
+// every cache point.
 struct IrradianceCache::Gather {
   const Scene& scene;
   const RayScene& rays;
@@ -64,7 +62,8 @@ struct IrradianceCache::Gather {
   Values gather(const Values& source, int samples, std::uint32_t pass, Values* emitted, std::uint64_t& cast) {
     Values values(points.size(), glm::vec3(0.0f));
     if (emitted) emitted->assign(points.size(), glm::vec3(0.0f));
-    for_each_point([&](std::size_t k) { gather_point(k, source, samples, pass, values[k], emitted ? &(*emitted)[k] : nullptr); });
+    for_each_point(
+        [&](std::size_t k) { gather_point(k, source, samples, pass, values[k], emitted ? &(*emitted)[k] : nullptr); });
     cast += points.size() * static_cast<std::uint64_t>(samples);
     return values;
   }
@@ -119,9 +118,10 @@ struct IrradianceCache::Gather {
   }
 };
 
-IrradianceCache::IrradianceCache(const Scene& scene, const RayScene& rays, const DirectLight& direct,
-                                 const LightOptions& options, Progress& progress, std::vector<glm::vec3> kept)
-    : points_(scene, rays, options.cache_spacing_m, kMaxPoints, progress), rays_cast_(points_.rays_cast()) {
+IrradianceCache::IrradianceCache(const Scene& scene, const RayScene& rays, const CachePoints& points,
+                                 const DirectLight& direct, const LightOptions& options, Progress& progress,
+                                 std::vector<glm::vec3> kept)
+    : points_(points) {
   if (!kept.empty() && kept.size() == points_.size()) {
     indirect_ = std::move(kept);
     return;

@@ -9,23 +9,32 @@
 #include <optional>
 #include <span>
 
+#include "content/bake/cache_points.h"
 #include "content/bake/direct_light.h"
 #include "content/bake/irradiance_cache.h"
 #include "content/bake/surface_point.h"
 #include "content/pack/pack_io.h"
 
 namespace probewalk {
+namespace {
+
+// More points than this take longer to gather than they add; the spacing is raised instead.
+constexpr std::size_t kMaxPoints = 300000;
+
+}  // namespace
 
 struct LightField::Impl {
   Impl(const Scene& scene_in, const RayScene& rays_in, const LightOptions& options, Progress& progress,
        std::vector<glm::vec3> kept)
       : scene(scene_in),
         rays(rays_in),
-        direct(scene_in, rays_in),
-        cache(scene_in, rays_in, direct, options, progress, std::move(kept)) {}
+        points(scene_in, rays_in, options.cache_spacing_m, kMaxPoints, progress),
+        direct(scene_in, rays_in, points, progress),
+        cache(scene_in, rays_in, points, direct, options, progress, std::move(kept)) {}
 
   const Scene& scene;
   const RayScene& rays;
+  CachePoints points;
   DirectLight direct;
   IrradianceCache cache;
   mutable tbb::combinable<std::uint64_t> rays_cast{[] { return std::uint64_t(0); }};
@@ -36,9 +45,9 @@ LightField::LightField(const Scene& scene, const RayScene& rays, const LightOpti
   std::optional<tbb::global_control> limit;
   if (options.threads > 0) limit.emplace(tbb::global_control::max_allowed_parallelism, options.threads);
   impl_ = std::make_unique<Impl>(scene, rays, options, progress, std::move(kept));
-  if (impl_->cache.spacing_m() > 1.001 * options.cache_spacing_m) {
+  if (impl_->points.spacing_m() > 1.001 * options.cache_spacing_m) {
     progress.note(fmt::format("indirect light is cached every {:.2f} m instead of {:.2f} m: the scene is large",
-                              impl_->cache.spacing_m(), options.cache_spacing_m));
+                              impl_->points.spacing_m(), options.cache_spacing_m));
   }
 }
 
@@ -72,13 +81,20 @@ glm::vec3 LightField::along(glm::vec3 origin_m, glm::vec3 unit_direction, float 
 }
 
 std::uint64_t LightField::rays_cast() const {
-  return impl_->cache.rays_cast() + impl_->rays_cast.combine(std::plus<>());
+  return impl_->points.rays_cast() + impl_->direct.rays_cast() + impl_->cache.rays_cast() +
+         impl_->rays_cast.combine(std::plus<>());
 }
 
-std::size_t LightField::cache_points() const { return impl_->cache.size(); }
+std::size_t LightField::cache_points() const {
+  return impl_->points.size();
+}
 
-const std::vector<glm::vec3>& LightField::cache_values() const { return impl_->cache.values(); }
+const std::vector<glm::vec3>& LightField::cache_values() const {
+  return impl_->cache.values();
+}
 
-std::string LightField::hash() const { return content_hash(std::as_bytes(std::span(impl_->cache.values()))); }
+std::string LightField::hash() const {
+  return content_hash(std::as_bytes(std::span(impl_->cache.values())));
+}
 
 }  // namespace probewalk

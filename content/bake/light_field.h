@@ -1,6 +1,7 @@
 // Outgoing radiance at any surface point: one noise-free, view-independent function that the bake and the reference
 // pictures share, so that errors measured are errors of the probes. Direct light by next-event estimation over a fixed
-// low-discrepancy pattern (at most 8 shadow rays), indirect from irradiance cached on the surfaces.
+// low-discrepancy pattern (eight shadow rays, more only where more lights shine), indirect from irradiance cached on
+// the surfaces.
 #pragma once
 
 #include <cstdint>
@@ -16,11 +17,11 @@
 namespace probewalk {
 
 struct LightOptions {
-  int bounces = 4;             // of indirect light
-  int samples = 128;           // rays a cache point and bounce
+  int bounces = 4;    // of indirect light
+  int samples = 128;  // rays a cache point and bounce
   double cache_spacing_m = 0.25;
   std::uint32_t seed = 1;
-  int threads = 0;             // 0 = all
+  int threads = 0;  // 0 = all
 };
 
 class LightField {
@@ -38,7 +39,8 @@ class LightField {
   glm::vec3 outgoing(const SurfaceHit& hit, glm::vec3 origin_m, glm::vec3 unit_direction, float footprint_m,
                      glm::vec3* irradiance = nullptr) const;
   // outgoing() under light that the caller already knows (lux): material and emission only, no shadow rays.
-  glm::vec3 outgoing_lit(const SurfaceHit& hit, glm::vec3 unit_direction, float footprint_m, glm::vec3 irradiance) const;
+  glm::vec3 outgoing_lit(const SurfaceHit& hit, glm::vec3 unit_direction, float footprint_m,
+                         glm::vec3 irradiance) const;
   // Radiance along a ray: outgoing() of what it meets, else the sky. spread_rad is the ray's angular width.
   glm::vec3 along(glm::vec3 origin_m, glm::vec3 unit_direction, float spread_rad, SurfaceHit* hit = nullptr,
                   glm::vec3* irradiance = nullptr) const;

@@ -115,6 +115,52 @@ TEST(LightField, ManyLightsShareTheirShadowsRoughly) {
   }
 }
 
+// Two rooms with a wall between, the lamps of one near the wall and far stronger: none of their light may be taken for
+// visible in the other. Against the sum of scenes with one lamp each, which needs no choice between lights.
+TEST(LightField, LampsOfTheNextRoomDoNotShineThroughTheWall) {
+  LightOptions options = quick();
+  options.samples = 1;
+  options.cache_spacing_m = 0.5;
+  options.bounces = 0;
+  constexpr int kPoints = 1500;
+  const auto fraction = [](double start, double step, int k) { return float(std::fmod(start + step * k, 1.0)); };
+  for (const int lamps : {3, 12, 40}) {
+    std::vector<Light> lights;
+    for (int k = 0; k < lamps; ++k) {
+      const float x = 0.3f + 3.4f * fraction(0.5, 0.7548776, k), z = -2.7f + 5.4f * fraction(0.5, 0.5698403, k);
+      lights.push_back(plain::point_light({x, 2.4f, z}, 20.0f + 5.0f * float(k % 3)));
+      lights.push_back(plain::point_light({-0.2f - 0.2f * x, 1.4f, z}, 100.0f));
+    }
+    const auto add_light_of = [&](std::size_t first, std::size_t end, std::vector<double>& radiance) {
+      Scene scene;
+      plain::add_material(scene, glm::vec3(0.5f));
+      plain::add_box(scene, {-4, 0, -3}, {4, 2.7f, 3}, 0);
+      plain::add_quad(scene, {0, 0, -3}, {0, 0, 3}, {0, 2.7f, 3}, {0, 2.7f, -3}, 0);
+      plain::add_box(scene, {1.5f, 0.1f, -1}, {2.5f, 0.8f, 1}, 0);  // a table that throws shadows
+      scene.lights.assign(lights.begin() + std::ptrdiff_t(first), lights.begin() + std::ptrdiff_t(end));
+      const RayScene rays(scene);
+      SilentProgress progress;
+      const LightField light(scene, rays, options, progress);
+      for (int i = 0; i < kPoints; ++i) {
+        const glm::vec3 from(0.1f + 3.8f * fraction(0.5, 0.8191725, i), 0.05f, -2.9f + 5.8f * fraction(0.5, 0.6710436, i));
+        const glm::vec3 down = i % 2 == 0 ? glm::vec3(0, -1, 0) : glm::vec3(-1, 0.3f, 0.2f);
+        radiance[std::size_t(i)] += double(light.along(from, glm::normalize(down), 1e-3f).r);
+      }
+    };
+    std::vector<double> truth(kPoints), together(kPoints);
+    for (std::size_t k = 0; k < lights.size(); ++k) add_light_of(k, k + 1, truth);
+    add_light_of(0, lights.size(), together);
+    double sum = 0.0, all = 0.0, off = 0.0;
+    for (std::size_t i = 0; i < kPoints; ++i) {
+      sum += truth[i];
+      all += together[i];
+      off += std::abs(together[i] - truth[i]);
+    }
+    EXPECT_NEAR(all / sum, 1.0, 0.02) << lamps << " lamps in either room";
+    EXPECT_LT(off / sum, lamps == 3 ? 1e-4 : lamps == 12 ? 0.05 : 0.12) << lamps << " lamps in either room";
+  }
+}
+
 // A small glowing square over a plane: the patch's points must add up to the light that a Lambertian square sends down.
 TEST(LightField, LightsAPlaneByAPanel) {
   Scene scene;

@@ -1,0 +1,117 @@
+#include "content/bake/emitter_light.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "content/bake/patterns.h"
+#include "content/bake/surface_point.h"
+
+namespace probewalk {
+namespace {
+
+constexpr float kFarAway_m = 1e6f;
+
+// KHR_lights_punctual: the window that ends a light at its range.
+float range_window(const Light& light, float distance_m) {
+  if (!(light.range_m > 0.0f)) return 1.0f;
+  const float ratio = distance_m / light.range_m;
+  return std::clamp(1.0f - ratio * ratio * ratio * ratio, 0.0f, 1.0f);
+}
+
+// KHR_lights_punctual: distance, range window and cone.
+float attenuation(const Light& light, glm::vec3 to_light, float distance_m) {
+  const float value = range_window(light, distance_m) / std::max(distance_m * distance_m, 1e-4f);
+  if (light.kind != Light::Kind::kSpot) return value;
+  const float inner = std::cos(light.inner_cone_rad), outer = std::cos(light.outer_cone_rad);
+  const float cone = (glm::dot(light.direction, -to_light) - outer) / std::max(0.001f, inner - outer);
+  const float clamped = std::clamp(cone, 0.0f, 1.0f);
+  return value * clamped * clamped;
+}
+
+glm::vec3 unshadowed_light(const Light& light, const Receiver& receiver) {
+  if (light.kind == Light::Kind::kDirectional) return light.intensity * receiver.cosine(-light.direction);
+  const glm::vec3 offset = light.position_m - receiver.position_m;
+  const float distance_m = glm::length(offset);
+  if (!(distance_m > 0.0f)) return glm::vec3(0.0f);
+  const float cosine = receiver.cosine(offset / distance_m);
+  return cosine > 0.0f ? light.intensity * (cosine * attenuation(light, offset / distance_m, distance_m))
+                       : glm::vec3(0.0f);
+}
+
+// Irradiance from one sample of a patch. Its own extent softens the inverse square nearby (a disk seen along its axis).
+glm::vec3 unshadowed_sample(const EmissivePatch& patch, const EmissivePatch::Sample& sample, const Receiver& receiver) {
+  const glm::vec3 offset = sample.position_m - receiver.position_m;
+  const float square = glm::dot(offset, offset);
+  if (!(square > 0.0f)) return glm::vec3(0.0f);
+  const glm::vec3 to_light = offset / std::sqrt(square);
+  const float cosine = receiver.cosine(to_light);
+  if (!(cosine > 0.0f)) return glm::vec3(0.0f);
+  const float at_light = -glm::dot(sample.normal, to_light);
+  if (at_light > 0.0f ? !sample.front_open : !sample.back_open) return glm::vec3(0.0f);
+  return sample.weight *
+         (cosine * std::abs(at_light) / (square + patch.sample_area_m2 * std::numbers::inv_pi_v<float>));
+}
+
+bool reaches(const RayScene& rays, glm::vec3 origin, glm::vec3 target, float stop_short_m) {
+  const glm::vec3 offset = target - origin;
+  const float distance_m = glm::length(offset);
+  const float far_m = distance_m * (1.0f - 1e-4f) - stop_short_m;
+  return far_m <= 0.0f || !rays.occluded(origin, offset / distance_m, 0.0f, far_m);
+}
+
+}  // namespace
+
+glm::vec3 EmitterLight::unshadowed(std::uint32_t emitter, const Receiver& receiver) const {
+  if (!is_patch(emitter)) return unshadowed_light(emitters_.lights[emitter].light, receiver);
+  const EmissivePatch& patch = emitters_.patches[emitter - emitters_.lights.size()];
+  const float behind_m = glm::dot(patch.centre_m - receiver.position_m, receiver.geometric_normal);
+  if (behind_m < -patch.radius_m) return glm::vec3(0.0f);
+  glm::vec3 sum(0.0f);
+  for (const EmissivePatch::Sample& sample : patch.samples) sum += unshadowed_sample(patch, sample, receiver);
+  return sum;
+}
+
+float EmitterLight::power(std::uint32_t emitter) const {
+  return is_patch(emitter) ? emitters_.patches[emitter - emitters_.lights.size()].power_cd
+                           : strongest_channel(emitters_.lights[emitter].light.intensity);
+}
+
+float EmitterLight::strength_near(std::uint32_t emitter, glm::vec3 centre_m, float radius_m) const {
+  if (is_patch(emitter)) {
+    const EmissivePatch& patch = emitters_.patches[emitter - emitters_.lights.size()];
+    const float distance_m = glm::length(patch.centre_m - centre_m);
+    return patch.power_cd / std::max(distance_m * distance_m, radius_m * radius_m);
+  }
+  const Light& light = emitters_.lights[emitter].light;
+  if (light.kind == Light::Kind::kDirectional) return power(emitter);
+  const float distance_m = glm::length(light.position_m - centre_m);
+  return power(emitter) * range_window(light, std::max(distance_m - radius_m, 0.0f)) /
+         std::max(distance_m * distance_m, radius_m * radius_m);
+}
+
+float EmitterLight::visible_fraction(std::uint32_t emitter, int ray_count, const Receiver& receiver,
+                                     std::uint64_t& rays_cast) const {
+  const glm::vec3 origin = receiver.position_m + receiver.geometric_normal * ray_offset_m(receiver.position_m);
+  if (!is_patch(emitter)) {
+    const PunctualEmitter& punctual = emitters_.lights[emitter];
+    ++rays_cast;
+    if (punctual.light.kind == Light::Kind::kDirectional) {
+      return rays_.occluded(origin, -punctual.light.direction, 0.0f, kFarAway_m) ? 0.0f : 1.0f;
+    }
+    return reaches(rays_, origin, punctual.light.position_m, punctual.lamp_radius_m) ? 1.0f : 0.0f;
+  }
+  const EmissivePatch& patch = emitters_.patches[emitter - emitters_.lights.size()];
+  float seen = 0.0f, all = 0.0f;
+  for (int k = 0; k < kPatchSamples && (k < ray_count || all == 0.0f); ++k) {
+    const EmissivePatch::Sample& sample = patch.samples[k];
+    const float weight = luminance(unshadowed_sample(patch, sample, receiver));
+    if (!(weight > 0.0f)) continue;
+    all += weight;
+    ++rays_cast;
+    if (reaches(rays_, origin, sample.position_m, ray_offset_m(sample.position_m))) seen += weight;
+  }
+  return all > 0.0f ? seen / all : 0.0f;
+}
+
+}  // namespace probewalk
