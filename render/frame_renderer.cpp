@@ -58,9 +58,9 @@ struct FrameSlot {
   std::uint64_t hidden_version = 0;
   PassTimer timer;
   std::vector<VkImageView> layer_views, depth_views;  // of the target
-  std::uint64_t frame = 0;      // submitted last from this slot
-  std::uint64_t last_work = 0;  // timeline value of the slot's last submit
-  bool is_timed = true;         // the frame recorded last
+  std::uint64_t frame = 0;                            // submitted last from this slot
+  std::uint64_t last_work = 0;                        // timeline value of the slot's last submit
+  bool is_timed = true;                               // the frame recorded last
   bool has_untaken_times = false;
 };
 
@@ -100,9 +100,7 @@ struct FrameRenderer::Impl {
   std::uint32_t slot_index() const { return static_cast<std::uint32_t>(next_frame % kFrameSlots); }
   FrameSlot& slot() { return slots[slot_index()]; }
 
-  void wait_for(std::uint64_t value) const {
-    check(wait_for_timeline(device, timeline, value), "vkWaitSemaphores");
-  }
+  void wait_for(std::uint64_t value) const { check(wait_for_timeline(device, timeline, value), "vkWaitSemaphores"); }
 
   // Highest frame that is known to have finished.
   std::uint64_t completed_frame() const {
@@ -270,7 +268,9 @@ FrameRenderer::FrameRenderer(const Device& device, ProbeStore& store, const Fram
 
 FrameRenderer::~FrameRenderer() = default;
 
-void FrameRenderer::set_timed(bool timed) { impl_->is_timed = timed; }
+void FrameRenderer::set_timed(bool timed) {
+  impl_->is_timed = timed;
+}
 
 void FrameRenderer::record(const FrameTarget& target) {
   Impl& impl = *impl_;
@@ -302,10 +302,11 @@ void FrameRenderer::record(const FrameTarget& target) {
 
   const VkCommandBuffer upload = slot.commands[kUploadCommands];
   begin_commands(upload);
-  impl.bytes_copied = impl.store.begin_frame(upload, impl.slot_index(), impl.next_frame, impl.completed_frame());
+  const StoreWork work = impl.store.begin_frame(upload, impl.slot_index(), impl.next_frame, impl.completed_frame());
   check(vkEndCommandBuffer(upload), "vkEndCommandBuffer");
-  // At once: the copies must happen even when the frame is given up before its submit.
-  if (impl.bytes_copied > 0) impl.submit({&upload, 1}, VK_NULL_HANDLE, VK_NULL_HANDLE);
+  impl.bytes_copied = work.copied_bytes;
+  // At once: copies and builds must happen even when the frame is given up before its submit.
+  if (!work.is_none()) impl.submit({&upload, 1}, VK_NULL_HANDLE, VK_NULL_HANDLE);
 
   const VkDeviceAddress constants = slot.constants.address();
   begin_commands(slot.commands[kTrace]);

@@ -35,8 +35,8 @@ class StorageImageSet {
 struct PushConstants {
   VkDeviceAddress constants = 0;  // where the rest lies
   std::uint32_t view = 0;         // that a draw is for
-  std::uint32_t reserved = 0;
-  VkDeviceAddress list = 0;  // of edge pixels, where a pass fills or reads one (shaders/shared/edge_list.h)
+  std::uint32_t first = 0;        // of what a dispatch makes, where it makes a part
+  VkDeviceAddress list = 0;       // of edge pixels, where a pass fills or reads one (shaders/shared/edge_list.h)
 };
 
 // Owns a pipeline and its layout.
