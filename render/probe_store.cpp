@@ -1,5 +1,6 @@
 #include "render/probe_store.h"
 
+#include <algorithm>
 #include <deque>
 #include <limits>
 #include <map>
@@ -42,6 +43,15 @@ struct ResidentLevel {
 // Looked at in one frame, to see whether there is a free place before them: a microsecond each or so.
 constexpr std::size_t kPiecesPerFrame = 64;
 
+// A processor that plays the device reads samples a hundred times as slowly, on the cores that draw the frame.
+std::uint64_t build_budget(const Device& device, std::uint64_t stated_bytes) {
+  constexpr std::uint64_t kSoftwareMost_bytes = 1u << 20;
+  VkPhysicalDeviceProperties properties{};
+  vkGetPhysicalDeviceProperties(device.physical(), &properties);
+  return properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU ? std::min(stated_bytes, kSoftwareMost_bytes)
+                                                              : stated_bytes;
+}
+
 // What the device may still read or write.
 struct Retired {
   std::vector<ProbeArena::Piece> pieces;
@@ -82,6 +92,7 @@ struct ProbeStore::Impl {
         options(dials),
         probe_count(probes),
         arena(owner, dials.arena_bytes),
+        build_bytes_per_frame(build_budget(owner, dials.build_bytes_per_frame)),
         pyramids(owner),
         tables(owner, grid, probes, dials.frame_slots, dials.fade_frames) {
     if (owner.has_copy_queue() || dials.copy_apart) copies.emplace(owner);
@@ -235,6 +246,7 @@ struct ProbeStore::Impl {
   const std::uint32_t probe_count;
   ProbeArena arena;  // before all that holds its pieces
 
+  const std::uint64_t build_bytes_per_frame;
   const PyramidBuilder pyramids;
   mutable std::mutex mutex;
   ProbeTables tables;
@@ -307,7 +319,7 @@ StoreWork ProbeStore::begin_frame(VkCommandBuffer commands, std::uint32_t slot, 
   } else {
     work.copied_bytes = impl_->copy_with_frame(commands, impl_->options.upload_bytes_per_frame);
   }
-  work.built_bytes = impl_->build_with_frame(commands, impl_->options.build_bytes_per_frame);
+  work.built_bytes = impl_->build_with_frame(commands, impl_->build_bytes_per_frame);
   work.moved_bytes = impl_->move_with_frame(commands, impl_->options.upload_bytes_per_frame, kPiecesPerFrame);
   impl_->tables.write(slot, frame);
   return work;

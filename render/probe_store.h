@@ -23,7 +23,7 @@ struct ProbeStoreOptions {
   // device has one, else by the frame's commands.
   std::uint64_t upload_bytes_per_frame = 8u << 20;
   // Samples read in one frame at most to build pyramids from, where they are not handed in. They are read about twice
-  // for every two levels of a pyramid.
+  // for every two levels of a pyramid. Less where a processor plays the device.
   std::uint64_t build_bytes_per_frame = 16u << 20;
   // Copy through the queue even where the CPU could write the device's memory.
   bool always_stage = false;
