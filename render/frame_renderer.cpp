@@ -330,10 +330,11 @@ void FrameRenderer::record(const FrameTarget& target, const Guides& guides) {
 
   const VkCommandBuffer upload = slot.commands[kUploadCommands];
   begin_commands(upload);
-  impl.bytes_copied = impl.store.begin_frame(upload, impl.slot_index(), impl.next_frame, impl.completed_frame());
+  const StoreWork work = impl.store.begin_frame(upload, impl.slot_index(), impl.next_frame, impl.completed_frame());
   check(vkEndCommandBuffer(upload), "vkEndCommandBuffer");
-  // At once: the copies must happen even when the frame is given up before its submit.
-  if (impl.bytes_copied > 0) impl.submit({&upload, 1}, VK_NULL_HANDLE, VK_NULL_HANDLE);
+  impl.bytes_copied = work.copied_bytes;
+  // At once: copies and builds must happen even when the frame is given up before its submit.
+  if (!work.is_none()) impl.submit({&upload, 1}, VK_NULL_HANDLE, VK_NULL_HANDLE);
 
   const VkDeviceAddress constants = slot.constants.address();
   begin_commands(slot.commands[kTrace]);

@@ -38,7 +38,7 @@ class StorageImageSet {
 struct PushConstants {
   VkDeviceAddress constants = 0;  // where the rest lies
   std::uint32_t view = 0;         // that a draw is for
-  std::uint32_t reserved = 0;
+  std::uint32_t first = 0;        // of what a dispatch makes, where it makes a part
   VkDeviceAddress list = 0;  // what a pass has beside: edge pixels (shaders/shared/edge_list.h), guides (guides.h)
 };
 

@@ -11,6 +11,9 @@
 namespace probewalk {
 namespace {
 
+// Levels of a few sizes come and go: the fullest place that fits keeps large ones free.
+constexpr std::uint32_t kTightest = VMA_VIRTUAL_ALLOCATION_CREATE_STRATEGY_MIN_MEMORY_BIT;
+
 std::uint64_t largest_buffer_bytes(const Device& device) {
   VkPhysicalDeviceMaintenance4Properties sizes{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MAINTENANCE_4_PROPERTIES};
   VkPhysicalDeviceMaintenance3Properties allocations{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MAINTENANCE_3_PROPERTIES,
@@ -61,12 +64,11 @@ void ProbeArena::grow(std::uint64_t least_bytes) {
   }
 }
 
-bool ProbeArena::take(Block& block, std::uint64_t size_bytes, Piece& piece) {
+bool ProbeArena::take(Block& block, std::uint64_t size_bytes, std::uint32_t strategy, Piece& piece) {
   VmaVirtualAllocationCreateInfo info{};
   info.size = size_bytes;
   info.alignment = kDeviceBlockAlignment;
-  // Levels of a few sizes come and go: the fullest place that fits keeps large ones free.
-  info.flags = VMA_VIRTUAL_ALLOCATION_CREATE_STRATEGY_MIN_MEMORY_BIT;
+  info.flags = strategy;
   VmaVirtualAllocation allocation = VK_NULL_HANDLE;
   VkDeviceSize offset = 0;
   if (vmaVirtualAllocate(block.pieces, &info, &allocation, &offset) != VK_SUCCESS) return false;  // no room in it
@@ -82,14 +84,32 @@ ProbeArena::Piece ProbeArena::allocate(std::uint64_t size_bytes) {
   Piece piece;
   const std::lock_guard lock(mutex_);
   for (Block& block : blocks_) {
-    if (take(block, size_bytes, piece)) return piece;
+    if (take(block, size_bytes, kTightest, piece)) return piece;
   }
   if (grows_ && size_bytes <= largest_block_bytes_) {
     grow(size_bytes);
-    if (take(blocks_.back(), size_bytes, piece)) return piece;
+    if (take(blocks_.back(), size_bytes, kTightest, piece)) return piece;
   }
   throw VulkanError(VK_ERROR_OUT_OF_DEVICE_MEMORY,
                     fmt::format("the device memory for probes has no room for {} more bytes in one piece", size_bytes));
+}
+
+std::optional<ProbeArena::Piece> ProbeArena::allocate_before(const Piece& piece) {
+  std::optional<Piece> found;
+  const std::lock_guard lock(mutex_);
+  for (Block& block : blocks_) {
+    Piece place;
+    if (take(block, piece.size_bytes(), VMA_VIRTUAL_ALLOCATION_CREATE_STRATEGY_MIN_OFFSET_BIT, place)) {
+      if (&block != piece.block_ || place.offset_bytes() < piece.offset_bytes()) {
+        found = std::move(place);
+      } else {
+        vmaVirtualFree(block.pieces, place.allocation_);
+        place.arena_ = nullptr;
+      }
+    }
+    if (found || &block == piece.block_) break;
+  }
+  return found;
 }
 
 void ProbeArena::give_back(const Piece& piece) {

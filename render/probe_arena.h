@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <list>
 #include <mutex>
+#include <optional>
 #include <utility>
 
 #include "render/buffer.h"
@@ -68,6 +69,8 @@ class ProbeArena {
 
   // Any thread. Throws VulkanError (VK_ERROR_OUT_OF_DEVICE_MEMORY) when no room is left, or none in one piece.
   Piece allocate(std::uint64_t size_bytes);
+  // Any thread. A place for as much that lies before `piece`, the first that is free, if there is one.
+  std::optional<Piece> allocate_before(const Piece& piece);
   // Of an arena of stated size, in pieces of up to `largest_piece_bytes`: what may be held for nearly every level to
   // find room (all but one in a thousand where there is room for 50 pieces). The fewer pieces there is room for, the
   // more is lost between them.
@@ -91,7 +94,7 @@ class ProbeArena {
 
   void add_block(std::uint64_t size_bytes);
   void grow(std::uint64_t least_bytes);
-  bool take(Block& block, std::uint64_t size_bytes, Piece& piece);
+  bool take(Block& block, std::uint64_t size_bytes, std::uint32_t strategy, Piece& piece);
   void give_back(const Piece& piece);
 
   const Device& device_;

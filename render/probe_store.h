@@ -22,6 +22,9 @@ struct ProbeStoreOptions {
   // Copied in one frame at most, where the CPU cannot write the device's memory itself: on a queue of its own where the
   // device has one, else by the frame's commands.
   std::uint64_t upload_bytes_per_frame = 8u << 20;
+  // Samples read in one frame at most to build pyramids from, where they are not handed in. They are read about twice
+  // for every two levels of a pyramid. Less where a processor plays the device.
+  std::uint64_t build_bytes_per_frame = 16u << 20;
   // Copy through the queue even where the CPU could write the device's memory.
   bool always_stage = false;
   // Copy beside the frames even where there is but one queue.
@@ -38,10 +41,19 @@ struct RoomUpload {
   std::vector<DeviceProbe> probes;
 };
 
+// What a frame does for the rooms before it traces.
+struct StoreWork {
+  std::uint64_t copied_bytes = 0;  // by the frame's own commands
+  std::uint64_t built_bytes = 0;   // samples that pyramids are built from
+  std::uint64_t moved_bytes = 0;   // to make room in one piece
+  bool is_none() const { return copied_bytes == 0 && built_bytes == 0 && moved_bytes == 0; }
+};
+
 class ProbeStore {
  public:
   // `grid` serves `probe_count` probes; its entries must be below that. Nothing is resident yet.
-  ProbeStore(const Device& device, const ProbeGrid& grid, std::uint32_t probe_count, const ProbeStoreOptions& options = {});
+  ProbeStore(const Device& device, const ProbeGrid& grid, std::uint32_t probe_count,
+             const ProbeStoreOptions& options = {});
   ~ProbeStore();
   ProbeStore(const ProbeStore&) = delete;
   ProbeStore& operator=(const ProbeStore&) = delete;
@@ -50,18 +62,21 @@ class ProbeStore {
   static std::uint64_t bytes_of(const std::vector<DeviceProbe>& probes);
 
   // Any thread. Allocates, and copies the words where the device's memory can be written directly; otherwise into
-  // staging memory that later frames copy from. The level shows from a following begin_frame on. Replaces an earlier
-  // upload of the same room and level. Throws VulkanError when device memory is exhausted: nothing has changed then.
+  // staging memory that later frames copy from. Pyramids that are open are built by later frames, within their budget.
+  // The level shows from a following begin_frame on. Replaces an earlier upload of the same room and level. Throws
+  // VulkanError when device memory is exhausted: nothing has changed then, but later frames move what is there
+  // together, so that there is room in one piece for a later try.
   void upload(const RoomUpload& room);
   // Any thread. The level stops showing at the next begin_frame; its memory is freed when no frame reads it any more.
   void evict(std::uint32_t room, std::uint32_t level);
 
   // Frame thread, once a frame, with the slot's previous frame finished: frees what frames up to `completed_frame`
-  // alone could read, records copies within the budget into `commands`, and writes the slot's table. Returns the number
-  // of bytes that `commands` copies (0: nothing was recorded).
-  std::uint64_t begin_frame(VkCommandBuffer commands, std::uint32_t slot, std::uint64_t frame,
-                            std::uint64_t completed_frame);
-  // Blocks until everything handed in is on the device and in the tables of all slots. No frame may be in flight.
+  // alone could read, records copies and builds within the budgets into `commands`, and writes the slot's table.
+  // `commands` need not run where the work is none, must where there is some, even if the frame is given up.
+  StoreWork begin_frame(VkCommandBuffer commands, std::uint32_t slot, std::uint64_t frame,
+                        std::uint64_t completed_frame);
+  // Blocks until everything handed in is on the device and in the tables of all slots, and frees what was evicted. No
+  // frame may be in flight.
   void settle();
   // What a frame begun here must wait for on the device before it traces, if anything: copies that have run on another
   // queue (they have finished: nothing is lost by waiting).
@@ -70,13 +85,14 @@ class ProbeStore {
   const GridConstants& grid(std::uint32_t slot) const;
 
   // Any thread.
-  bool idle() const;  // everything handed in has arrived and shows
+  bool idle() const;                                                // everything handed in has arrived and shows
   int level_shown(std::uint32_t room) const;                        // as of the last begin_frame; -1 = none
   bool is_resident(std::uint32_t room, std::uint32_t level) const;  // all of it is on the device
   std::uint64_t device_bytes() const;    // of probe data, what is retired but not yet freed included
   std::uint64_t reserved_bytes() const;  // taken from the device for it
-  std::uint32_t queue_depth() const;     // uploads that wait for their copies
-  std::uint64_t bytes_uploaded() const;  // since construction
+  std::uint32_t queue_depth() const;     // uploads that wait for their copies or pyramids
+  std::uint64_t times_freed() const;     // rises when memory has come free: what there was no room for may have it now
+  std::uint64_t bytes_uploaded() const;  // from the host since construction
 
  private:
   struct Impl;

@@ -11,12 +11,12 @@ template <typename Resource>
 class RetirementQueue {
  public:
   // `last_frame` is the last frame whose commands may use the resource; frames are retired in rising order.
-  void retire(Resource resource, std::uint64_t last_frame) {
-    retired_.emplace_back(last_frame, std::move(resource));
-  }
-  // Destroys what no frame after `completed_frame` uses.
-  void release(std::uint64_t completed_frame) {
-    while (!retired_.empty() && retired_.front().first <= completed_frame) retired_.pop_front();
+  void retire(Resource resource, std::uint64_t last_frame) { retired_.emplace_back(last_frame, std::move(resource)); }
+  // Destroys what no frame after `completed_frame` uses; returns whether there was any.
+  bool release(std::uint64_t completed_frame) {
+    bool any = false;
+    for (; !retired_.empty() && retired_.front().first <= completed_frame; any = true) retired_.pop_front();
+    return any;
   }
   template <typename Visitor>
   void for_each(Visitor visit) const {

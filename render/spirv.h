@@ -16,6 +16,8 @@ extern const std::span<const std::uint32_t> k_fill_blocks_comp;
 extern const std::span<const std::uint32_t> k_find_edges_comp;
 extern const std::span<const std::uint32_t> k_sample_edges_comp;
 extern const std::span<const std::uint32_t> k_sample_edges_baseline_comp;
+extern const std::span<const std::uint32_t> k_build_pyramid_cells_comp;
+extern const std::span<const std::uint32_t> k_build_pyramid_nodes_comp;
 extern const std::span<const std::uint32_t> k_resolve_vert;
 extern const std::span<const std::uint32_t> k_resolve_frag;
 extern const std::span<const std::uint32_t> k_depth_frag;

@@ -32,6 +32,7 @@ struct WalkOptions {
   std::optional<bool> settle;                     // wait for the rooms that each pose wants; default: offscreen only
   std::uint64_t budget_bytes = kUnlimitedBudget;  // device memory for probes
   unsigned loader_threads = 1;
+  std::optional<PyramidMaker> pyramids;  // who builds the probes'; empty = who is quicker at it
   CacheOptions cache;                    // of a pack on a web server
   std::uint32_t samples = 1;             // rays of a pixel at an edge: 1, 2 or 4
   std::optional<bool> eye_scale_adapts;  // to the device's time; default: headset only

@@ -37,7 +37,7 @@ WalkLeg::WalkLeg(const WalkOptions& options, const Pack& pack, const Display& di
       settle_(options.settle.value_or(source_.kind() == "offscreen" && !books.left_ns)),
       rooms_(pack, *display.device,
              {options.budget_bytes, options.loader_threads, options.cache, options.report.has_value(), !settle_,
-              options.open_chunks},
+              options.pyramids, options.open_chunks},
              progress),
       baselines_(options.choice.needs_maps() && options.maps != nullptr
                      ? std::make_unique<BaselineStore>(*display.device, *options.maps, options.choice)
@@ -180,8 +180,9 @@ std::vector<ViewPose> WalkLeg::draw(const FrameTiming& timing, FrameRecord& reco
     wall_fade_.advance(rooms_.is_free(head.position_m), static_cast<double>(timing.period_ns) * 1e-9);
   }
   if (settle_) {
-    const Interval settled = stamped([&] { rooms_.settle(); });
+    const Interval settled = stamped([&] { rooms_.settle([&] { renderer_.wait(); }); });
     record.streaming_ns += settled.end - settled.begin;
+    if (progress_.cancelled()) return {};  // there may be less to show than there would have been
   }
   FrameTarget target;
   record.record = stamped([&] {
@@ -197,7 +198,7 @@ std::vector<ViewPose> WalkLeg::draw(const FrameTiming& timing, FrameRecord& reco
   if (auto meshes = source_.take_hidden_meshes()) renderer_.hide(std::move(*meshes));
   // Where rooms reach the device through the queue, a byte budget spreads them over frames: those before the last are
   // drawn for nothing.
-  while (settle_ && !rooms_.all_shown()) {
+  while (settle_ && !rooms_.all_shown() && !progress_.cancelled()) {
     write(views, target.extent);
     renderer_.submit();
     renderer_.record(target, guides());

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "content/error.h"
+#include "render/check.h"
 #include "render/frame_renderer.h"
 #include "render/probe_arena.h"
 #include "xr/latency/clock.h"
@@ -14,7 +15,7 @@ namespace {
 
 constexpr auto kSettlePatience = std::chrono::minutes(5);
 constexpr double kVelocitySmoothing_s = 0.2;  // head bob and sway average out
-constexpr double kJump_m = 0.5;  // further in one frame is a teleport, not a motion
+constexpr double kJump_m = 0.5;               // further in one frame is a teleport, not a motion
 
 // What may be held of a stated budget. The reserve gives way to what a walk cannot do without.
 double usable_share(const Manifest& manifest, std::uint64_t budget_bytes) {
@@ -60,6 +61,8 @@ StreamerOptions streamer_options(const WalkRoomsOptions& options, const Manifest
   // Threads that wait for a far source do not compute.
   streamer.loader.threads = std::max(options.threads, source.parallel_reads());
   streamer.loader.decoders = options.threads;
+  streamer.loader.pyramids =
+      options.pyramids.value_or(device.info().is_software ? PyramidMaker::kHost : PyramidMaker::kDevice);
   streamer.residency.most_loads = std::max(streamer.residency.most_loads, source.parallel_reads());
   streamer.retire_updates = kFrameSlots + 1;
   streamer.keep_loads = options.keep_loads;
@@ -76,6 +79,7 @@ std::string end_of(const LoadResult& load) {
     case LoadResult::End::kCancelled:
       return kNotNeededAnyMore;
     case LoadResult::End::kUnavailable:
+    case LoadResult::End::kNoRoom:
     case LoadResult::End::kBad:
       return load.error;
   }
@@ -115,7 +119,18 @@ void WalkRooms::deliver(LoadedLevel&& loaded) {
   for (std::uint32_t i = 0; loaded.level == 0 && i < loaded.probes.size(); ++i) {
     free_air_.add(loaded.first_probe + i, loaded.probes[i]);
   }
-  store_.upload({loaded.room, loaded.level, loaded.first_probe, std::move(loaded.probes)});
+  try {
+    store_.upload({loaded.room, loaded.level, loaded.first_probe, std::move(loaded.probes)});
+  } catch (const VulkanError& error) {
+    if (error.result == VK_ERROR_OUT_OF_DEVICE_MEMORY) throw NoRoom(error.what());
+    throw;
+  }
+}
+
+void WalkRooms::tell_of_freed_space() {
+  if (const std::uint64_t times = store_.times_freed(); times != std::exchange(times_freed_, times)) {
+    streamer_.space_freed();
+  }
 }
 
 void WalkRooms::update(const ViewPose& head, const std::optional<glm::dvec3>& aim_m, std::int64_t display_ns,
@@ -132,6 +147,7 @@ void WalkRooms::update(const ViewPose& head, const std::optional<glm::dvec3>& ai
   walker_.head_m = head.position_m;
   walker_.look = head.orientation * glm::dvec3(0, 0, -1);
   walker_.aim_m = aim_m;
+  tell_of_freed_space();
   streamer_.update(walker_);
   report_errors();
 
@@ -152,8 +168,18 @@ void WalkRooms::update(const ViewPose& head, const std::optional<glm::dvec3>& ai
   record.streaming_ns = now_ns() - begin_ns;
 }
 
-void WalkRooms::settle() {
-  if (!streamer_.settle(walker_, kSettlePatience, [this] { report_errors(); })) {
+void WalkRooms::settle(const std::function<void()>& finish_frames) {
+  // No frame frees what is evicted, or moves what is there together, while none is drawn.
+  const auto free_memory = [&] {
+    report_errors();
+    if (!streamer_.settled() || streamer_.troubled() > 0) {
+      finish_frames();
+      store_.settle();
+      tell_of_freed_space();
+    }
+    return !progress_.cancelled();
+  };
+  if (!streamer_.settle(walker_, kSettlePatience, free_memory) && !progress_.cancelled()) {
     throw BadInput(fmt::format("{}: the rooms did not load within {} minutes; walk with --realtime to go on without",
                                pack_.path().string(), kSettlePatience.count()));
   }

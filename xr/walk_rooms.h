@@ -29,6 +29,7 @@ struct WalkRoomsOptions {
   CacheOptions cache;        // of a pack on a web server
   bool keep_loads = false;   // for a report: facts() lists them
   bool fade_levels = false;  // a finer level takes over gradually
+  std::optional<PyramidMaker> pyramids;  // empty = who is quicker at it
   ChunkOpener open_chunks;   // empty = open_source
 };
 
@@ -46,9 +47,10 @@ class WalkRooms {
   // `aim_m`: where a teleport would lead, while one is aimed.
   void update(const ViewPose& head, const std::optional<glm::dvec3>& aim_m, std::int64_t display_ns,
               FrameRecord& record);
-  // Waits until what the last update's walker wants has been handed to the device. Throws BadInput when the pack does
-  // not deliver.
-  void settle();
+  // Waits until what the last update's walker wants has been handed to the device, or the walk is to stop
+  // (progress.cancelled()). `finish_frames` is called where memory must come free: it waits for all frames in flight.
+  // Throws BadInput when the pack does not deliver.
+  void settle(const std::function<void()>& finish_frames);
   // Everything wanted shows in the frame that was recorded last.
   bool all_shown() const { return streamer_.settled() && store_.idle(); }
 
@@ -67,6 +69,7 @@ class WalkRooms {
  private:
   void deliver(LoadedLevel&& loaded);
   void report_errors();
+  void tell_of_freed_space();
 
   const Pack& pack_;
   Progress& progress_;
@@ -79,6 +82,7 @@ class WalkRooms {
   std::optional<std::int64_t> last_display_ns_;
   std::string last_error_;
   std::uint64_t bytes_uploaded_ = 0;  // as of the last update
+  std::uint64_t times_freed_ = 0;     // that the streamer knows of
   double darkness_ = 1.0;
 };
 

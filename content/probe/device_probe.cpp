@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <cstring>
 
 #include "content/probe/pyramid.h"
 #include "content/probe/tracer_f32.h"
@@ -14,14 +15,16 @@ namespace {
 
 constexpr float kRounding = 2e-6f;  // keeps l_min_m inside the empty octahedron whatever the rounding
 
-int log2_of(int power_of_two) { return std::countr_zero(static_cast<unsigned>(power_of_two)); }
+int log2_of(int power_of_two) {
+  return std::countr_zero(static_cast<unsigned>(power_of_two));
+}
 
 // A cell in quadrant-local terms: local corner (a, b) is vertex (x0 + su * a, y0 + sv * b).
 struct Cell {
   const ProbeGeometry& map;
-  int i, j;    // cell
-  int su, sv;  // direction of local U and V in the map
-  int x0, y0;  // vertex at local (0, 0)
+  int i, j;                    // cell
+  int su, sv;                  // direction of local U and V in the map
+  int x0, y0;                  // vertex at local (0, 0)
   bool upper_low, upper_high;  // octant (z >= 0) of the low and of the high triangle
 
   Cell(const ProbeGeometry& geometry, int ci, int cj) : map(geometry), i(ci), j(cj) {
@@ -31,7 +34,7 @@ struct Cell {
     x0 = su > 0 ? i : i + 1;
     y0 = sv > 0 ? j : j + 1;
     const int u = su > 0 ? i - half : half - 1 - i, v = sv > 0 ? j - half : half - 1 - j;
-    upper_low = u + v < half;       // the fold |u| + |v| = 1 runs along the diagonals of cells with u + v = half - 1
+    upper_low = u + v < half;  // the fold |u| + |v| = 1 runs along the diagonals of cells with u + v = half - 1
     upper_high = u + v < half - 1;
   }
 
@@ -51,7 +54,9 @@ struct Cell {
     return oriented(map.edges_vertical[static_cast<std::size_t>(j) * (map.n + 1) + (x0 + su * a)], sv > 0);
   }
   // Stored from (i+1, j) to (i, j+1) where su == sv, else from (i, j) to (i+1, j+1); either way from the smaller j.
-  std::uint8_t diagonal() const { return oriented(map.edges_diagonal[static_cast<std::size_t>(j) * map.n + i], sv > 0); }
+  std::uint8_t diagonal() const {
+    return oriented(map.edges_diagonal[static_cast<std::size_t>(j) * map.n + i], sv > 0);
+  }
 };
 
 // Slopes of w along local U and V a cell step, of the plane through the vertex's surface (design: tracer, step 9),
@@ -97,9 +102,26 @@ struct CutFlags {
 };
 
 CutFlags cut_flags(const Cell& cell) {
-  const std::array<std::uint8_t, 5> e{cell.along_u(0), cell.along_v(0), cell.diagonal(), cell.along_v(1), cell.along_u(1)};
+  const std::array<std::uint8_t, 5> e{cell.along_u(0), cell.along_v(0), cell.diagonal(), cell.along_v(1),
+                                      cell.along_u(1)};
   const auto cut = [&](int k) { return static_cast<std::uint32_t>(e[k] != kConnected); };
   return {cut(0) | cut(2) << 1 | cut(1) << 2 | cut(3) << 4 | cut(2) << 5 | cut(4) << 6, e};
+}
+
+constexpr int kCellsAtOnce = 8;  // a row has a multiple of them
+
+// Whether any edge of the kCellsAtOnce cells from (i, j) on is cut.
+bool any_cut(const ProbeGeometry& g, int i, int j) {
+  static_assert(kConnected == 0 && kCellsAtOnce == sizeof(std::uint64_t));
+  const auto edges = [](const std::vector<std::uint8_t>& from, std::size_t index) {
+    std::uint64_t eight = 0;
+    std::memcpy(&eight, &from[index], sizeof(eight));
+    return eight;
+  };
+  const std::size_t cell = static_cast<std::size_t>(j) * g.n + static_cast<std::size_t>(i);
+  const std::size_t left = cell + static_cast<std::size_t>(j);
+  return (edges(g.edges_horizontal, cell) | edges(g.edges_horizontal, cell + g.n) | edges(g.edges_vertical, left) |
+          edges(g.edges_vertical, left + 1) | edges(g.edges_diagonal, cell)) != 0;
 }
 
 void append_cut_record(const Cell& cell, const CutFlags& cut, std::vector<std::uint32_t>& words) {
@@ -150,46 +172,51 @@ std::uint64_t device_bytes(const DeviceProbe& probe) {
   return device_block_bytes(probe.geometry) + device_block_bytes(probe.radiance);
 }
 
-DeviceProbe build_device_probe(const ProbeMap& map) {
+WordRange pyramid_range(std::uint32_t n_log2) {
+  return {static_cast<std::size_t>(f32::pyramid_begin(1 << n_log2)),
+          static_cast<std::size_t>(f32::pyramid_words(static_cast<int>(n_log2)))};
+}
+
+DeviceProbe build_device_probe(const ProbeMap& map, PyramidMaker maker) {
   const ProbeGeometry& g = map.geometry;
   const int n = g.n;
+  const auto cells = static_cast<std::size_t>(n) * n;
+  const WordRange pyramid = pyramid_range(static_cast<std::uint32_t>(log2_of(n)));
+  const std::size_t masks = pyramid.first + pyramid.count, records = masks + cells / 16;
   DeviceProbe probe;
   std::vector<std::uint32_t>& words = probe.geometry;
-  words.reserve(device_probe_bytes(n, 1, 0) / 4 + 1024);
-  for (float w : g.w) words.push_back(std::bit_cast<std::uint32_t>(w));
+  words.reserve(records + 1024);
+  words.resize(records);
+  std::memcpy(words.data(), g.w.data(), g.w.size() * sizeof(float));
 
-  // Cells: maxima for the pyramid, masks, cut records.
-  std::vector<float> maxima(static_cast<std::size_t>(n) * n);
-  std::vector<std::uint32_t> masks, records;
-  masks.reserve(static_cast<std::size_t>(n) * n / 16);
+  // Every vertex is a cell's, so that the largest w of all is that of the cells without cuts or less.
+  std::uint32_t top_bits = 0;  // of what is not negative the bits are in the order of the floats
+  for (std::size_t k = 0; k < g.w.size(); ++k) top_bits = std::max(top_bits, words[k]);
+  auto top = std::bit_cast<float>(top_bits);
   std::uint32_t cut_cells = 0;
-  std::vector<bool> cut_cell(maxima.size());
-  for (int j = 0; j < n; ++j) {
-    for (int i = 0; i < n; ++i) {
-      const std::size_t index = static_cast<std::size_t>(j) * n + i;
-      if (index % 32 == 0) {
-        masks.push_back(0);
-        masks.push_back(cut_cells);
-      }
-      const Cell cell(g, i, j);
-      float maximum = std::max({cell.w(0, 0), cell.w(1, 0), cell.w(0, 1), cell.w(1, 1)});
-      if (const CutFlags cut = cut_flags(cell); cut.flags != 0) {
-        masks[masks.size() - 2] |= 1u << (index % 32);
-        append_cut_record(cell, cut, records);
-        ++cut_cells;
-        cut_cell[index] = true;
-        maximum *= kCutExtension;
-      }
-      maxima[index] = maximum;
+  for (std::size_t first = 0; first < cells; first += kCellsAtOnce) {
+    const std::size_t mask = masks + first / 32 * 2;
+    if (first % 32 == 0) words[mask + 1] = cut_cells;
+    const int j = static_cast<int>(first) / n, i = static_cast<int>(first) % n;
+    if (!any_cut(g, i, j)) continue;
+    for (int k = 0; k < kCellsAtOnce; ++k) {
+      const Cell cell(g, i + k, j);
+      const CutFlags cut = cut_flags(cell);
+      if (cut.flags == 0) continue;
+      words[mask] |= 1u << (first % 32 + static_cast<unsigned>(k));
+      append_cut_record(cell, cut, words);
+      ++cut_cells;
+      top = std::max(top, std::max({cell.w(0, 0), cell.w(1, 0), cell.w(0, 1), cell.w(1, 1)}) * kCutExtension);
     }
   }
-  const float top = *std::max_element(maxima.begin(), maxima.end());
-  words.resize(static_cast<std::size_t>(f32::pyramid_begin(n)), 0u);
-  append_pyramid(g, std::move(maxima), cut_cell, words);
-  words.insert(words.end(), masks.begin(), masks.end());
-  words.insert(words.end(), records.begin(), records.end());
+  if (maker == PyramidMaker::kHost) {
+    build_pyramid(n, words);
+  } else {
+    probe.pyramid_is_open = pyramid.count > 0;
+  }
 
   const ProbeRadiance& radiance = map.radiance;
+  probe.radiance.reserve(radiance.rgb9e5.size() + radiance.texel_w.size() / 2);
   probe.radiance = radiance.rgb9e5;
   for (std::size_t k = 0; k + 1 < radiance.texel_w.size(); k += 2) {
     probe.radiance.push_back(radiance.texel_w[k] | static_cast<std::uint32_t>(radiance.texel_w[k + 1]) << 16);
@@ -207,7 +234,8 @@ DeviceProbe build_device_probe(const ProbeMap& map) {
 ProbeRecord record_in_memory(const DeviceProbe& probe) {
   const auto address = [](const std::vector<std::uint32_t>& words) {
     const auto bits = reinterpret_cast<std::uintptr_t>(words.data());
-    return glm::uvec2(static_cast<std::uint32_t>(bits), static_cast<std::uint32_t>(static_cast<std::uint64_t>(bits) >> 32));
+    return glm::uvec2(static_cast<std::uint32_t>(bits),
+                      static_cast<std::uint32_t>(static_cast<std::uint64_t>(bits) >> 32));
   };
   ProbeRecord record = probe.record;
   record.geometry_address = address(probe.geometry);

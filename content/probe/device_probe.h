@@ -1,5 +1,5 @@
-// From a probe as it is packed to the words that the tracer reads (layout: shaders/shared/probe_layout.h). Run by loader
-// threads; a pure function of the map, so the same pack gives the same words everywhere.
+// From a probe as it is packed to the words that the tracer reads (layout: shaders/shared/probe_layout.h). Run by
+// loader threads; a pure function of the map, so the same pack gives the same words everywhere.
 #pragma once
 
 #include <cstdint>
@@ -14,9 +14,23 @@ struct DeviceProbe {
   std::vector<std::uint32_t> geometry;
   std::vector<std::uint32_t> radiance;
   ProbeRecord record{};  // everything but the addresses
+  bool pyramid_is_open =
+      false;  // the pyramid's words are not filled in: the device does that (render/pyramid_builder.h)
 };
 
-DeviceProbe build_device_probe(const ProbeMap& map);
+enum class PyramidMaker {
+  kHost,    // for tracing in this process's memory
+  kDevice,  // for the device alone
+};
+
+DeviceProbe build_device_probe(const ProbeMap& map, PyramidMaker maker = PyramidMaker::kHost);
+
+// Where the pyramid lies among the words of a geometry block.
+struct WordRange {
+  std::size_t first = 0;
+  std::size_t count = 0;
+};
+WordRange pyramid_range(std::uint32_t n_log2);
 
 // Points the record at the words in this process's memory, so that the C++ tracers can run on it.
 // The words must outlive the record's use.

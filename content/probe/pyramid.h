@@ -1,19 +1,14 @@
 // The pyramid over a probe's cells that lets a ray skip empty space and meet walls as one plane (layout and meaning:
-// shaders/shared/probe_layout.h).
+// shaders/shared/probe_layout.h), on the host.
 #pragma once
 
 #include <cstdint>
-#include <vector>
-
-#include "content/probe/probe_map.h"
+#include <span>
 
 namespace probewalk {
 
-// The 15-bit code of w, rounded up: what it decodes to is at least w. 0 for 0.
-std::uint32_t pyramid_code(float w);
-
-// Appends the pyramid's words. maxima: n^2, largest w of each cell with its cut's extension; cut: whether it has a cut.
-void append_pyramid(const ProbeGeometry& geometry, std::vector<float> maxima, const std::vector<bool>& cut,
-                    std::vector<std::uint32_t>& words);
+// Fills in the pyramid among the words of a geometry block whose samples and cuts are there: what the device does by
+// itself with the words that it is sent (shaders/build_pyramid.glsl), to the bit.
+void build_pyramid(int n, std::span<std::uint32_t> words);
 
 }  // namespace probewalk

@@ -21,7 +21,10 @@ std::int64_t now_ns() {
 
 ChunkLoader::ChunkLoader(const Manifest& manifest, const ChunkSource& source, Deliver deliver,
                          const LoaderOptions& options)
-    : manifest_(manifest), source_(source), deliver_(std::move(deliver)), queue_capacity_(options.queue_capacity),
+    : manifest_(manifest),
+      source_(source),
+      deliver_(std::move(deliver)),
+      queue_capacity_(options.queue_capacity), pyramids_(options.pyramids),
       decoders_(std::max(options.decoders, 1u)) {
   for (unsigned k = 0; k < std::max(options.threads, 1u); ++k) {
     threads_.emplace_back([this, k](std::stop_token stop) { work(stop, k); });
@@ -126,6 +129,8 @@ LoadResult ChunkLoader::load(const Request& request) {
     decoders_.acquire();
     try {
       decode(request, result, chunk);
+    } catch (const NoRoom& error) {
+      fail(LoadResult::End::kNoRoom, error);
     } catch (const BadInput& error) {
       fail(LoadResult::End::kBad, error);
     } catch (const std::exception& error) {
@@ -145,7 +150,7 @@ void ChunkLoader::decode(const Request& request, LoadResult& result, const std::
       result.end = LoadResult::End::kCancelled;
       return;
     }
-    loaded.probes.push_back(build_device_probe(map));
+    loaded.probes.push_back(build_device_probe(map, pyramids_));
     result.bytes_device += device_bytes(loaded.probes.back());
     map = ProbeMap{};  // a room at its finest need not be in memory twice
   }

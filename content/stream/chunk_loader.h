@@ -1,4 +1,5 @@
-// Loader threads: read a chunk, check its hash, decompress, decode, make the device's words, hand them to the device.
+// Loader threads: read a chunk, check its hash, decompress, decode, make the device's words but for the pyramids, hand
+// them to the device.
 // The frame thread only asks and polls; it never waits for any of this.
 #pragma once
 
@@ -10,6 +11,7 @@
 #include <memory>
 #include <mutex>
 #include <semaphore>
+#include <stdexcept>
 #include <string>
 #include <thread>
 #include <vector>
@@ -21,7 +23,7 @@
 
 namespace probewalk {
 
-// The words of one room's probes at one level, ready for the device.
+// The words of one room's probes at one level, ready for the device, which makes their pyramids.
 struct LoadedLevel {
   std::uint32_t room = 0;
   std::uint32_t level = 0;
@@ -29,17 +31,23 @@ struct LoadedLevel {
   std::vector<DeviceProbe> probes;
 };
 
+// What a Deliver throws where the device has no room for a level now: other levels must make it first.
+struct NoRoom : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
 struct LoadResult {
   enum class End {
     kArrived,
-    kRefused,      // takes more than was reserved: not handed over
+    kRefused,  // takes more than was reserved: not handed over
     kCancelled,
-    kUnavailable,  // the source did not deliver, or the device has no space: later it may
+    kUnavailable,  // the source did not deliver: later it may
+    kNoRoom,       // the device has no room for it: it may when others have gone
     kBad,          // the bytes are those that the pack means, and are no sound chunk
   };
   LevelKey key;
   End end = End::kArrived;
-  std::string error;  // of kUnavailable and kBad. Errors are values here: nothing is thrown across threads
+  std::string error;  // of kUnavailable, kNoRoom and kBad. Errors are values here: nothing is thrown across threads
   std::uint64_t bytes_disk = 0;
   std::uint64_t bytes_device = 0;  // that it really takes; 0 = not decoded
   unsigned thread = 0;             // that loaded it, from 0
@@ -55,6 +63,9 @@ struct LoaderOptions {
   unsigned threads = 1;   // that wait for the source
   unsigned decoders = 1;  // of them may compute at a time
   std::size_t queue_capacity = 64;
+  // Who builds the pyramids of what is delivered: a GPU does it beside its frames, for less than the bytes cost. Where a
+  // processor plays the device, the decoders are ten times as quick.
+  PyramidMaker pyramids = PyramidMaker::kHost;
 };
 
 class ChunkLoader {
@@ -96,6 +107,7 @@ class ChunkLoader {
   const ChunkSource& source_;
   Deliver deliver_;
   std::size_t queue_capacity_;
+  PyramidMaker pyramids_;
   std::atomic<std::size_t> depth_{0};
   std::mutex queue_mutex_;
   std::condition_variable_any queue_filled_;

@@ -111,6 +111,7 @@ void RoomStreamer::arrive(LoadResult& result) {
       book_.set(key, LevelStatus::kAbsent);
       return;
     case LoadResult::End::kUnavailable:
+    case LoadResult::End::kNoRoom:
     case LoadResult::End::kBad:
       stumble(result);
       return;
@@ -144,10 +145,13 @@ void RoomStreamer::stumble(const LoadResult& result) {
   const auto [place, is_new] = troubled_.try_emplace(result.key);
   Trouble& trouble = place->second;
   trouble.is_damage = result.end == LoadResult::End::kBad;
+  trouble.lacks_room = result.end == LoadResult::End::kNoRoom;
   const std::int64_t first_ns = trouble.is_damage ? kDamageRetry_ns : kSourceRetry_ns;
   const std::int64_t last_ns = trouble.is_damage ? kDamageRetryMost_ns : kSourceRetryMost_ns;
   const std::int64_t now = now_ns();
   trouble.retry_ns = now + std::min(last_ns, first_ns << std::min(trouble.tries, 16u));
+  // Freed since it was tried, while the news of that was on its way.
+  if (trouble.lacks_room && freed_ns_ >= result.decoded_ns) trouble.retry_ns = freed_ns_;
   ++trouble.tries;
   book_.set(result.key, LevelStatus::kFailed);
   ++statistics_.levels_failed;
@@ -155,8 +159,10 @@ void RoomStreamer::stumble(const LoadResult& result) {
   ++record.tries;
   record.overcome = false;
   record.reason = result.error;
-  // Where the source fails, or the device has no space, one line now and then says so, however many levels wait.
-  if (!is_new || (!trouble.is_damage && failure_told_ns_ > 0 && now - failure_told_ns_ < kTellAgain_ns)) return;
+  // Where the source fails, or the device has no space, one line now and then says so, however many levels wait. That
+  // space must first be put together is no news.
+  const bool is_news = trouble.lacks_room ? trouble.tries == 2 : is_new;
+  if (!is_news || (!trouble.is_damage && failure_told_ns_ > 0 && now - failure_told_ns_ < kTellAgain_ns)) return;
   if (!trouble.is_damage) failure_told_ns_ = now;
   errors_.push_back(result.error);
 }
@@ -170,9 +176,20 @@ void RoomStreamer::retry(std::int64_t now_ns) {
   }
 }
 
+void RoomStreamer::space_freed() {
+  freed_ns_ = now_ns();
+  for (auto& [key, trouble] : troubled_) {
+    if (!trouble.lacks_room || trouble.retry_ns == 0) continue;
+    trouble.retry_ns = freed_ns_;
+    decision_.settled = false;
+  }
+}
+
+// Whether time alone may bring what could not be loaded: not what the device has no room for.
 bool RoomStreamer::awaits_source() const {
   return std::any_of(troubled_.begin(), troubled_.end(), [](const auto& entry) {
-    return !entry.second.is_damage && entry.second.retry_ns > 0 && entry.second.tries <= kSettleTries;
+    const Trouble& trouble = entry.second;
+    return !trouble.is_damage && !trouble.lacks_room && trouble.retry_ns > 0 && trouble.tries <= kSettleTries;
   });
 }
 
@@ -187,11 +204,11 @@ std::string RoomStreamer::describe_refused(const LoadResult& result) const {
 }
 
 bool RoomStreamer::settle(const Walker& walker, std::chrono::milliseconds at_most,
-                          const std::function<void()>& between) {
+                          const std::function<bool()>& between) {
   const auto deadline = std::chrono::steady_clock::now() + at_most;
   while (true) {
     update(walker);
-    if (between) between();
+    if (between && !between()) return false;
     if (settled() && !awaits_source()) return true;
     if (std::chrono::steady_clock::now() >= deadline) return false;
     loader_.wait(std::chrono::milliseconds(10));

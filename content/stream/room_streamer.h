@@ -33,8 +33,8 @@ struct TroubleRecord {
 struct StreamerStatistics {
   std::uint64_t bytes_read = 0;
   std::uint64_t levels_loaded = 0;
-  std::uint64_t rooms_loaded = 0;  // that have had any level
-  std::uint64_t levels_failed = 0;   // times that a level could not be loaded
+  std::uint64_t rooms_loaded = 0;   // that have had any level
+  std::uint64_t levels_failed = 0;  // times that a level could not be loaded
   std::uint64_t levels_cancelled = 0;
   std::uint64_t levels_refused = 0;  // took more than the pack states, and were planned anew
   std::uint64_t updates = 0;
@@ -49,9 +49,9 @@ struct StreamerStatistics {
 
 class RoomStreamer {
  public:
-  // Both outlive the streamer. `upload` is called on loader threads, `evict` on the thread of update(). What could not be
-  // loaded is tried again: at once and then ever more seldom, a damaged chunk after seconds.
-  // Throws BadUsage when the budget is too small.
+  // Both outlive the streamer. `upload` is called on loader threads, `evict` on the thread of update(). What could not
+  // be loaded is tried again: at once and then ever more seldom, a damaged chunk after seconds, and what the device had
+  // no room for as soon as it has freed some. Throws BadUsage when the budget is too small.
   RoomStreamer(const Manifest& manifest, const ChunkSource& source, ChunkLoader::Deliver upload,
                std::function<void(LevelKey)> evict, const StreamerOptions& options = {});
 
@@ -68,13 +68,17 @@ class RoomStreamer {
   const std::map<LevelKey, TroubleRecord>& troubles() const { return troubles_; }
   // Every load that has finished, in that order; empty unless options.keep_loads.
   const std::vector<LoadResult>& loads() const { return loads_; }
-  // One line for each chunk that is damaged, or takes more than the pack states, one when the source stops delivering, and
-  // one when what was missing has come, since the last call.
+  // One line for each chunk that is damaged, or takes more than the pack states, one when the source stops delivering,
+  // and one when what was missing has come, since the last call.
   std::vector<std::string> take_errors() { return std::exchange(errors_, {}); }
 
+  // Device memory has been freed, or put together, since the last call: what there was no room for is tried again.
+  void space_freed();
+
   // Updates until settled, waiting for the loader in between; for stills and for walks that may take their time.
-  // False when it was not settled in time. `between` is called after each update (to let the device take uploads in).
-  bool settle(const Walker& walker, std::chrono::milliseconds at_most, const std::function<void()>& between = {});
+  // False when it was not settled in time, or `between` said so. `between` is called after each update: it lets the
+  // device take uploads in and free what was evicted, tells so by space_freed(), and returns whether to wait on.
+  bool settle(const Walker& walker, std::chrono::milliseconds at_most, const std::function<bool()>& between = {});
 
  private:
   void take_arrivals();
@@ -100,6 +104,7 @@ class RoomStreamer {
   struct Trouble {
     std::uint32_t tries = 0;
     bool is_damage = false;
+    bool lacks_room = false;  // on the device
     std::int64_t retry_ns = 0;
   };
 
@@ -110,6 +115,7 @@ class RoomStreamer {
   Residency residency_;
   std::map<LevelKey, Trouble> troubled_;
   std::map<LevelKey, TroubleRecord> troubles_;
+  std::int64_t freed_ns_ = 0;         // when device memory was freed last
   std::int64_t failure_told_ns_ = 0;  // that the source does not deliver; 0 = it does
   std::uint64_t coarse_run_ = 0;
   ResidencyDecision decision_;

@@ -8,13 +8,11 @@
 //                      entries (8 words, so that one read of 32 aligned bytes serves two levels of a binary pyramid);
 //                      nodes row-major, entries row-major in their node, the even one in the low half. An entry stands
 //                      for 2^l x 2^l cells:
-//                        bits 0..14  code of the maximum of w over it, rounded up (pyramid_code), cut cells counted
-//                        with
-//                                    their extension (1 + 2 kSlopeClamp); 0 = nothing but sky
-//                        bit 15      planar: no cut, and w at all its vertices lies within kPlanarTolerance of the
-//                        plane
-//                                    through its corners next to the map's centre: the ray meets that instead of the
-//                                    cells
+//                        bits 0..14  code of the maximum of w over it, rounded up (pyramid_build.h), cut cells counted
+//                                    with their extension (1 + 2 kSlopeClamp); 0 = nothing but sky
+//                        bit 15      planar: no cut, the entries below planar too, and w at all its vertices lies
+//                                    within kPlanarTolerance of the plane through its corners next to the map's centre:
+//                                    the ray meets that instead of the cells
 //   n^2/32 * 2         per 32 cells: mask of cells with a cut, number of such cells before
 //   8 per cut cell     cut record, quadrant-local (cell corner nearest the map's centre is (0, 0)):
 //     [0] fractions, 6 bits each: (0,0)-(1,0), (0,0)-(0,1), (1,0)-(0,1), (1,0)-(1,1), (0,1)-(1,1)

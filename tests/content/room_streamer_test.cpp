@@ -218,7 +218,8 @@ const Damage kDamages[] = {
     {"longer", [](const std::filesystem::path& file) { std::ofstream(file, std::ios::app) << "x"; }},
     {"of the wrong hash",
      [](const std::filesystem::path& file) {
-       rewrite(file, [](std::string& bytes) { bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 1); });
+       rewrite(file,
+               [](std::string& bytes) { bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 1); });
      }},
     {"missing", [](const std::filesystem::path& file) { std::filesystem::remove(file); }},
     {"a folder",
@@ -293,6 +294,88 @@ TEST(RoomStreamer, ADeviceWithoutSpaceIsToldOnceAndAskedAgain) {
   EXPECT_GE(fine, 2);
   EXPECT_THAT(streamer.take_errors(), testing::ElementsAre(HasSubstr("loaded after all")));
   for (const auto& [key, trouble] : streamer.troubles()) EXPECT_TRUE(trouble.overcome);
+}
+
+// A device that has no room for fine levels until told otherwise.
+struct CrowdedDevice {
+  std::atomic<bool> is_crowded{true};
+  std::atomic<int> tries{0}, fine{0};
+  ChunkLoader::Deliver sink() {
+    return [this](LoadedLevel&& loaded) {
+      if (loaded.level == 0) return;
+      ++tries;
+      if (is_crowded) throw NoRoom("no room in one piece");
+      ++fine;
+    };
+  }
+};
+
+TEST(RoomStreamer, WhatThereWasNoRoomForIsTriedAgainWhenSomeIsFreedAndNotBefore) {
+  const TemporaryFolder folder("streamer-crowded");
+  const Manifest m = write_small_pack(folder.path(), 2);
+  const FolderSource source(folder.path());
+  CrowdedDevice crowded;
+  RoomStreamer streamer(m, source, crowded.sink(), [](LevelKey) {});
+  const Walker walker{{1.0, 1.6, -2.0}, {}};
+  const auto before = std::chrono::steady_clock::now();
+  EXPECT_TRUE(streamer.settle(walker, 10s)) << "nothing is to come";
+  EXPECT_LT(std::chrono::steady_clock::now() - before, 5s) << "time alone makes no room";
+  EXPECT_EQ(streamer.troubled(), 2u);
+  EXPECT_EQ(streamer.book().status({0, 0}), LevelStatus::kResident);
+  EXPECT_EQ(streamer.book().status({0, 1}), LevelStatus::kFailed);
+  EXPECT_THAT(streamer.take_errors(), testing::IsEmpty()) << "room may be made at once: no news yet";
+
+  int freed = 0;
+  EXPECT_TRUE(streamer.settle(walker, 10s, [&] {
+    if (freed == 0) crowded.is_crowded = false;
+    if (freed++ == 0) streamer.space_freed();
+    return true;
+  }));
+  EXPECT_EQ(streamer.troubled(), 0u);
+  EXPECT_EQ(crowded.fine, 2);
+  EXPECT_EQ(streamer.book().status({0, 1}), LevelStatus::kResident);
+  EXPECT_THAT(streamer.take_errors(), testing::IsEmpty());
+}
+
+TEST(RoomStreamer, SpaceThatIsFreedBeforeTheRefusalIsKnownCountsToo) {
+  const TemporaryFolder folder("streamer-crossed");
+  const Manifest m = write_small_pack(folder.path(), 1);
+  const FolderSource source(folder.path());
+  CrowdedDevice crowded;
+  RoomStreamer streamer(m, source, crowded.sink(), [](LevelKey) {});
+  const Walker walker{{1.0, 1.6, -2.0}, {}};
+  streamer.update(walker);
+  for (int k = 0; k < 1000 && crowded.tries == 0; ++k) {
+    std::this_thread::sleep_for(2ms);
+    if (crowded.tries == 0) streamer.update(walker);
+  }
+  ASSERT_EQ(crowded.tries, 1);
+  std::this_thread::sleep_for(50ms);  // the refusal has been written down, and is not taken in
+  crowded.is_crowded = false;
+  streamer.space_freed();
+  const auto before = std::chrono::steady_clock::now();
+  EXPECT_TRUE(streamer.settle(walker, 10s));
+  EXPECT_LT(std::chrono::steady_clock::now() - before, 5s);
+  EXPECT_EQ(crowded.fine, 1);
+}
+
+TEST(RoomStreamer, SettlingEndsWhenItIsToldTo) {
+  const TemporaryFolder folder("streamer-stopped");
+  const Manifest m = write_small_pack(folder.path(), 1);
+  // As a server that does not answer.
+  struct Silent final : ChunkSource {
+    std::vector<std::byte> read(const LevelEntry&, const std::atomic<bool>& cancelled) const override {
+      while (!cancelled) std::this_thread::sleep_for(1ms);
+      throw Unavailable("cancelled");
+    }
+  } source;
+  Deliveries deliveries;
+  RoomStreamer streamer(m, source, deliveries.sink(), [](LevelKey) {});
+  const auto before = std::chrono::steady_clock::now();
+  int calls = 0;
+  EXPECT_FALSE(streamer.settle({{1.0, 1.6, -2.0}, {}}, 60s, [&] { return ++calls < 3; }));
+  EXPECT_LT(std::chrono::steady_clock::now() - before, 10s);
+  EXPECT_EQ(calls, 3);
 }
 
 TEST(RoomStreamer, StaysWithinTheBudgetAndEvictsWhatIsBehind) {

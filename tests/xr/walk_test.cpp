@@ -6,9 +6,12 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
+#include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <thread>
 
 #include "content/error.h"
 #include "content/image/image.h"
@@ -196,6 +199,32 @@ TEST(WalkOffscreen, EndsInOrderWhenInterrupted) {
   const WalkResult result = walk(options, progress);
   EXPECT_EQ(result.end, WalkResult::End::kInterrupted);
   EXPECT_EQ(lines_of(*options.report / "frames.csv").size(), 4u);
+}
+
+TEST(WalkOffscreen, EndsWhenInterruptedWhileItWaitsForRooms) {
+  struct Silent final : ChunkSource {
+    std::vector<std::byte> read(const LevelEntry&, const std::atomic<bool>& cancelled) const override {
+      while (!cancelled) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      throw Unavailable("cancelled");
+    }
+  };
+  struct Impatient final : Progress {
+    void begin(std::string_view, std::uint64_t, std::string_view) override {}
+    void advance(std::uint64_t) override {}
+    void note(std::string_view) override {}
+    bool cancelled() const override { return is_waiting && std::chrono::steady_clock::now() > end; }
+    std::atomic<bool> is_waiting{false};
+    std::chrono::steady_clock::time_point end;
+  } progress;
+  WalkOptions options = offscreen(1000);
+  options.open_chunks = [&](const std::string&, const CacheOptions&) {
+    progress.end = std::chrono::steady_clock::now() + std::chrono::milliseconds(300);
+    progress.is_waiting = true;
+    return std::make_unique<Silent>();
+  };
+  const WalkResult result = walk(options, progress);
+  EXPECT_EQ(result.end, WalkResult::End::kInterrupted);
+  EXPECT_LT(std::chrono::steady_clock::now() - progress.end, std::chrono::seconds(20));
 }
 
 // An offscreen display whose device is lost while the fifth frame is drawn.
