@@ -87,7 +87,8 @@ class Locomotion {
   // Where the head is, at the height of an ordinary eye over its floor: an anchor that gives the same rig.
   Pose anchor(const HeadPose& head) const;
   float fade() const { return blink_.darkness(); }  // 0 = picture, 1 = black
-  // While sticks or keys move or turn the view, and a moment longer; nothing where walls hold it, at a snap, at a blink.
+  // While sticks or keys move or turn the view, and a moment longer; nothing where walls hold it, at a snap, at a
+  // blink.
   std::optional<VignetteShape> vignette() const { return vignette_.shape(); }
   // While the person aims: the way of the throw in the world. Its landing is where a teleport would lead. Else null.
   const FloorArc* aim() const { return aim_ ? &*aim_ : nullptr; }

@@ -26,8 +26,8 @@ struct HeadsetOptions {
   OverlayBoard* overlay = nullptr;  // shown and hidden by a held menu button; outlives the source
 };
 
-// Nothing but the wearer moves the view, by head, hands and sticks (locomotion.h); teleports blink. When runtime, session or service goes away no call throws:
-// poll says kLost.
+// Nothing but the wearer moves the view, by head, hands and sticks (locomotion.h); teleports blink. When runtime,
+// session or service goes away no call throws: poll says kLost.
 class OpenXrSource final : public FrameSource {
  public:
   // `device` was made with the instance's hooks; it, `instance` and `floor` outlive the source.

@@ -15,7 +15,7 @@ namespace probewalk {
 struct WalkSettings {
   std::optional<std::string> turn;      // a name of turn_names()
   std::optional<std::string> vignette;  // a name of vignette_levels()
-  std::optional<double> world_scale;  // kWorldScaleMin to kWorldScaleMax
+  std::optional<double> world_scale;    // kWorldScaleMin to kWorldScaleMax
   std::optional<bool> seated;
   std::optional<double> eye_height_m;  // kEyeHeightMin_m to kEyeHeightMax_m
 

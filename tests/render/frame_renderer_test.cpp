@@ -279,8 +279,8 @@ TEST_F(FrameRendererTest, WritesTheDepthOfWhatIsSeen) {
     dials.depth_format = format;
     FrameRenderer renderer(device, store, dials);
     const Image image = make_target(2);
-    const Image depth(device, {format, kExtent, 2,
-                               VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT});
+    const Image depth(
+        device, {format, kExtent, 2, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT});
     FrameTarget target = target_of(image);
     target.depth_image = depth.handle();
     target.depth_format = format;

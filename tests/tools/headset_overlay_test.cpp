@@ -40,15 +40,15 @@ std::vector<EndedFrame> walk_with(const std::string& name, const std::string& ar
       std::system("ls /usr/share/openxr/1/api_layers/explicit.d/*core_validation* >/dev/null 2>&1") == 0;
   const fs::path folder = fresh_folder("headset-overlay-" + name);
   const std::string manifests = PROBEWALK_TEST_LAYER_MANIFESTS;
-  const MonadoWalk walk = walk_in_monado(
-      folder,
-      "export XR_API_LAYER_PATH='" + manifests + "':/usr/share/openxr/1/api_layers/explicit.d " +
-          "XR_ENABLE_API_LAYERS=XR_APILAYER_PROBEWALK_known_motion" +
-          (has_checks ? ":XR_APILAYER_LUNARG_core_validation XR_CORE_VALIDATION_EXPORT_TYPE=text "
-                        "XR_CORE_VALIDATION_FILE_NAME=$PWD/openxr.txt"
-                      : "") +
-          " PROBEWALK_TEST_LAYER=\"log=$PWD/layer.csv\"",
-      "--validate " + arguments);
+  const MonadoWalk walk =
+      walk_in_monado(folder,
+                     "export XR_API_LAYER_PATH='" + manifests + "':/usr/share/openxr/1/api_layers/explicit.d " +
+                         "XR_ENABLE_API_LAYERS=XR_APILAYER_PROBEWALK_known_motion" +
+                         (has_checks ? ":XR_APILAYER_LUNARG_core_validation XR_CORE_VALIDATION_EXPORT_TYPE=text "
+                                       "XR_CORE_VALIDATION_FILE_NAME=$PWD/openxr.txt"
+                                     : "") +
+                         " PROBEWALK_TEST_LAYER=\"log=$PWD/layer.csv\"",
+                     "--validate " + arguments);
   EXPECT_EQ(walk.run.exit_code, 0) << walk.run.err;
   EXPECT_THAT(walk.run.err, Not(HasSubstr("VUID")));
   EXPECT_THAT(walk.run.err, Not(HasSubstr("warning:")));
@@ -87,8 +87,8 @@ TEST(HeadsetOverlay, HiddenItHasNeitherLayerNorSwapchain) {
 TEST(HeadsetOverlay, IsForHeadsets) {
   const fs::path folder = fresh_folder("headset-overlay-refused");
   for (const char* display : {"window", "offscreen"}) {
-    const RunResult run = run_bash(folder, std::string("'") + PROBEWALK_EXECUTABLE + "' walk nowhere.probes --display " +
-                                               display + " --headset-overlay");
+    const RunResult run = run_bash(folder, std::string("'") + PROBEWALK_EXECUTABLE +
+                                               "' walk nowhere.probes --display " + display + " --headset-overlay");
     EXPECT_EQ(run.exit_code, 2) << run.err;
     EXPECT_THAT(run.err, HasSubstr("--headset-overlay"));
   }

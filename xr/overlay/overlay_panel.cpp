@@ -29,7 +29,7 @@ constexpr ImU32 kOver = IM_COL32(232, 178, 64, 255);
 constexpr ImU32 kMissed = IM_COL32(232, 80, 72, 255);
 constexpr ImU32 kDevice = IM_COL32(130, 190, 255, 255);
 constexpr ImU32 kLine = IM_COL32(255, 255, 255, 190);
-constexpr ImU32 kFaint = IM_COL32(255, 255, 255, 18);
+constexpr ImU32 kFaint = IM_COL32(255, 255, 255, 6);
 
 void text(const std::string& line) {
   ImGui::TextUnformatted(line.data(), line.data() + line.size());
@@ -53,6 +53,13 @@ void show_graph(const OverlayFacts& facts) {
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const ImVec2 end(corner.x + size.x, corner.y + size.y);
   list.AddRectFilled(corner, end, kFaint);
+  if (facts.frames.empty()) {
+    const char* const none = "no frame is complete yet";
+    const ImVec2 letters = ImGui::CalcTextSize(none);
+    list.AddText({std::round(corner.x + (size.x - letters.x) / 2), std::round(corner.y + (size.y - letters.y) / 2)},
+                 kLine, none);
+    return;
+  }
   double highest_ms = facts.budget_ms * 1.5;
   for (const OverlayFrame& frame : facts.frames) highest_ms = std::max(highest_ms, double(frame.frame_ms));
   highest_ms = std::max(facts.budget_ms > 0.0 ? std::min(highest_ms, 4.0 * facts.budget_ms) : highest_ms, 1.0);
@@ -60,19 +67,22 @@ void show_graph(const OverlayFacts& facts) {
     return end.y - static_cast<float>(std::clamp(ms / highest_ms, 0.0, 1.0)) * size.y;
   };
   const float step = size.x / static_cast<float>(OverlayBoard::kFrames);
-  float x = end.x - step * static_cast<float>(facts.frames.size());
+  // Whole pixels: the edges of bars between them would make a pattern of their own.
+  std::size_t to_come = facts.frames.size();
+  const auto edge = [&](std::size_t bars_before_end) {
+    return std::round(end.x - step * static_cast<float>(bars_before_end));
+  };
   for (const OverlayFrame& frame : facts.frames) {
-    const float right = x + std::max(step - 0.5f, 1.0f);
+    const float x = edge(to_come), right = edge(--to_come);
     if (frame.missed > 0) list.AddRectFilled({x, corner.y}, {right, end.y}, IM_COL32(232, 80, 72, 110));
     if (frame.frame_ms >= 0.0f) {
       const bool over = facts.budget_ms > 0.0 && frame.frame_ms > 1.05 * facts.budget_ms;
       list.AddRectFilled({x, y_of(frame.frame_ms)}, {right, end.y}, frame.missed > 0 ? kMissed : over ? kOver : kGood);
     }
     if (frame.gpu_busy_ms >= 0.0f) {
-      const float y = y_of(frame.gpu_busy_ms);
+      const float y = std::round(y_of(frame.gpu_busy_ms));
       list.AddRectFilled({x, y - 1.0f}, {right, y + 1.0f}, kDevice);
     }
-    x += step;
   }
   if (facts.budget_ms > 0.0) {
     const float y = std::round(y_of(facts.budget_ms));
@@ -139,7 +149,8 @@ void show_lookup_scale() {
   }
   constexpr int kMarks = 4;
   for (int k = 0; k <= kMarks; ++k) {
-    const std::string mark = fmt::format("{:.0f}{}", kMostLookups * static_cast<float>(k) / kMarks, k == kMarks ? "+" : "");
+    const std::string mark =
+        fmt::format("{:.0f}{}", kMostLookups * static_cast<float>(k) / kMarks, k == kMarks ? "+" : "");
     const float share = static_cast<float>(k) / kMarks;
     ImGui::SetCursorPosX(ImGui::GetStyle().WindowPadding.x + share * (width - ImGui::CalcTextSize(mark.c_str()).x));
     text(mark);
@@ -255,7 +266,7 @@ OverlayPanel::OverlayPanel() {
   style.AntiAliasedLinesUseTex = false;  // the atlas is not filtered
   style.WindowRounding = 0.0f;
   style.WindowBorderSize = 0.0f;
-  style.Colors[ImGuiCol_WindowBg] = ImVec4(0.02f, 0.02f, 0.03f, 0.93f);
+  style.Colors[ImGuiCol_WindowBg] = ImVec4(0.02f, 0.02f, 0.03f, 0.97f);
   style.Colors[ImGuiCol_TextDisabled] = ImVec4(0.7f, 0.7f, 0.7f, 1.0f);
   style.Colors[ImGuiCol_PlotHistogram] = ImGui::ColorConvertU32ToFloat4(IM_COL32(70, 120, 190, 255));
   unsigned char* coverage = nullptr;
