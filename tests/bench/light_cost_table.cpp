@@ -85,6 +85,20 @@ class PathTracer {
     return luminance(at.emission_cd_m2 + at.albedo * std::numbers::inv_pi_v<float> * lux);
   }
 
+  // The same by every emitter's own rays, as many as a patch has places.
+  double direct_by_all(const SurfacePoint& at) const {
+    const Receiver receiver{at.position_m, at.geometric_normal, at.normal};
+    glm::vec3 lux(0.0f);
+    std::uint64_t cast = 0;
+    for (std::uint32_t e = 0; e < emitters_.count(); ++e) {
+      const glm::vec3 value = emitters_.unshadowed(e, receiver);
+      if (strongest_channel(value) > 0.0f) {
+        lux += value * emitters_.visible_fraction(e, kPatchSamples, receiver, cast);
+      }
+    }
+    return luminance(at.emission_cd_m2 + at.albedo * std::numbers::inv_pi_v<float> * lux);
+  }
+
   // Luminance that leaves the point, of light that came by one random path.
   template <typename Random>
   double indirect(SurfacePoint at, Random& random, std::uint64_t& cast) const {
@@ -152,6 +166,7 @@ struct Texel {
   std::size_t probe = 0;
   double baked = 0.0;
   Moments direct, indirect;
+  double one_direct = 0.0, all_direct = 0.0;  // at the first place: as baked, and by every emitter
   double mean() const { return direct.mean() + indirect.mean(); }
 };
 
@@ -165,6 +180,7 @@ struct Row {
   std::uint64_t paths = 0;      // a texel, for the same error
   double path_cpu_s = 0.0;      // all texels of the run at that error
   double path_rays_per_texel = 0.0;
+  double direct_error = 0.0, direct_energy = 0.0;  // of the choice among lights, against rays to every one
   std::size_t judged = 0, at_edges = 0;
 };
 
@@ -241,6 +257,12 @@ class Comparison {
     });
     const Clock between;
     tbb::parallel_for(std::size_t(0), texels.size(), [&](std::size_t t) {
+      std::uint64_t cast = 0;
+      texels[t].one_direct = tracer.direct(places[t][0], cast);
+      texels[t].all_direct = tracer.direct_by_all(places[t][0]);
+    });
+    const Clock checked;
+    tbb::parallel_for(std::size_t(0), texels.size(), [&](std::size_t t) {
       std::mt19937 random(std::uint32_t(t) + 1);
       std::uint64_t cast = 0;
       for (int k = 0; k < sizes_.paths; ++k) {
@@ -249,7 +271,7 @@ class Comparison {
       indirect_rays += cast;
     });
     const Clock end;
-    conclude(texels, between.cpu_since(start), end.cpu_since(between), direct_rays, indirect_rays);
+    conclude(texels, between.cpu_since(start), end.cpu_since(checked), direct_rays, indirect_rays);
   }
 
   bool place_texel(std::mt19937& pick, Texel& texel, std::vector<SurfacePoint>& places) const {
@@ -285,6 +307,13 @@ class Comparison {
       direct += texel.direct.variance() / scale;
       indirect += texel.indirect.variance() / scale;
     }
+    double chosen = 0.0, all = 0.0, off = 0.0;
+    for (const Texel& texel : texels) {
+      chosen += texel.one_direct, all += texel.all_direct;
+      off += std::abs(texel.one_direct - texel.all_direct);
+    }
+    row_.direct_error = all > 0.0 ? off / all : 0.0;
+    row_.direct_energy = all > 0.0 ? chosen / all : 1.0;
     // What the judge is off by itself is not the bake's.
     const double own = indirect / sizes_.paths + direct / kDirectReference;
     const double error = std::max(square - own, 0.25 * own);
@@ -295,7 +324,7 @@ class Comparison {
       row_.paths += std::max<std::uint64_t>(row_.paths / 50, 1);
     }
     const double places = std::min(double(row_.paths), double(kDirectPlaces));
-    const auto of_one = [&](double all, int each) { return all / double(texels.size()) / each; };
+    const auto of_one = [&](double sum, int each) { return sum / double(texels.size()) / each; };
     row_.path_cpu_s = double(row_.texels) * (places * of_one(direct_cpu_s, kDirectReference) +
                                              double(row_.paths) * of_one(indirect_cpu_s, sizes_.paths));
     row_.path_rays_per_texel = places * of_one(double(direct_rays), kDirectReference) +
@@ -325,6 +354,8 @@ void print(const Row& row) {
   line("rays a texel", row.rays_per_texel, row.path_rays_per_texel);
   fmt::print("  {} paths a texel are as far off as the bake; the bake's energy is {:.4f} of the paths'\n", row.paths,
              row.baked_energy);
+  fmt::print("  direct light chosen: energy {:.4f} of that by rays to every light, mean error {:.4f} of it\n",
+             row.direct_energy, row.direct_error);
   fmt::print("  threads 1 -> 2: cache {:.2f} -> {:.2f} s ({:.2f}x), maps {:.2f} -> {:.2f} s ({:.2f}x)\n",
              row.cache_wall_s[0], row.cache_wall_s[1], row.cache_wall_s[0] / row.cache_wall_s[1], row.maps_wall_s[0],
              row.maps_wall_s[1], row.maps_wall_s[0] / row.maps_wall_s[1]);
@@ -334,11 +365,13 @@ std::string to_json(const Row& row) {
   return fmt::format(
       "{{\"scene\": \"{}\", \"probes\": {}, \"texels\": {}, \"cache_points\": {}, \"judged_texels\": {}, "
       "\"relative_rms_error\": {:.6g}, \"energy_ratio\": {:.6g}, \"cache_cpu_s\": {:.6g}, \"maps_cpu_s\": {:.6g}, "
+      "\"direct_energy_ratio\": {:.6g}, \"direct_mean_error\": {:.6g}, "
       "\"rays_per_texel\": {:.6g}, \"paths_per_texel\": {}, \"paths_cpu_s\": {:.6g}, \"paths_rays_per_texel\": {:.6g}, "
       "\"cache_wall_s\": [{:.6g}, {:.6g}], \"maps_wall_s\": [{:.6g}, {:.6g}]}}",
       row.scene, row.probes, row.texels, row.cache_points, row.judged, row.baked_error, row.baked_energy,
-      row.cache_cpu_s, row.maps_cpu_s, row.rays_per_texel, row.paths, row.path_cpu_s, row.path_rays_per_texel,
-      row.cache_wall_s[0], row.cache_wall_s[1], row.maps_wall_s[0], row.maps_wall_s[1]);
+      row.cache_cpu_s, row.maps_cpu_s, row.direct_energy, row.direct_error, row.rays_per_texel, row.paths,
+      row.path_cpu_s, row.path_rays_per_texel, row.cache_wall_s[0], row.cache_wall_s[1], row.maps_wall_s[0],
+      row.maps_wall_s[1]);
 }
 
 int run(const std::vector<std::string>& arguments) {
