@@ -24,8 +24,9 @@ namespace {
 
 // Each timed pass has a command buffer of its own (see PassTimer).
 enum Pass : std::uint32_t { kTrace, kResolve, kPasses };
-constexpr std::uint32_t kUploadCommands = kPasses;
-constexpr std::uint32_t kCommandBuffers = kPasses + 1;
+constexpr std::uint32_t kTimesCommands = kPasses;  // submitted after the passes, of frames that are timed
+constexpr std::uint32_t kUploadCommands = kPasses + 1;
+constexpr std::uint32_t kCommandBuffers = kPasses + 2;
 
 constexpr std::size_t kTimesKept = 64;
 
@@ -58,9 +59,10 @@ struct FrameSlot {
   std::uint64_t hidden_version = 0;
   PassTimer timer;
   std::vector<VkImageView> layer_views, depth_views;  // of the target
-  std::uint64_t frame = 0;      // submitted last from this slot
-  std::uint64_t last_work = 0;  // timeline value of the slot's last submit
-  bool is_timed = true;         // the frame recorded last
+  std::uint64_t frame = 0;                            // submitted last from this slot
+  std::uint64_t frame_work = 0;                       // timeline value of that
+  std::uint64_t last_work = 0;                        // of the slot's last submit
+  bool is_timed = true;                               // the frame recorded last
   bool has_untaken_times = false;
 };
 
@@ -91,6 +93,7 @@ struct FrameRenderer::Impl {
   }
   ~Impl() {
     if (lookups_to_come.valid()) lookups_to_come.wait();
+    if (guides_to_come.valid()) guides_to_come.wait();
     // Not wait_for: a lost device must not throw here.
     vkDeviceWaitIdle(device.handle());
     slots.clear();
@@ -100,9 +103,7 @@ struct FrameRenderer::Impl {
   std::uint32_t slot_index() const { return static_cast<std::uint32_t>(next_frame % kFrameSlots); }
   FrameSlot& slot() { return slots[slot_index()]; }
 
-  void wait_for(std::uint64_t value) const {
-    check(wait_for_timeline(device, timeline, value), "vkWaitSemaphores");
-  }
+  void wait_for(std::uint64_t value) const { check(wait_for_timeline(device, timeline, value), "vkWaitSemaphores"); }
 
   // Highest frame that is known to have finished.
   std::uint64_t completed_frame() const {
@@ -135,6 +136,26 @@ struct FrameRenderer::Impl {
     return picture;
   }
 
+  // What the next frame's guides are drawn by; null: it has none, or must go without.
+  GuidePass* choose_guides(bool wanted) {
+    if (guides_to_come.valid() && guides_to_come.wait_for(std::chrono::seconds(0)) == std::future_status::ready) {
+      guides = guides_to_come.get();
+    }
+    if (wanted) {
+      last_guides_frame = next_frame;
+      if (!guides && !guides_to_come.valid()) {
+        guides_to_come = std::async(std::launch::async, [this] {
+          return std::make_unique<GuidePass>(device, picture.tracer.distance(), options.target_format, kFrameSlots);
+        });
+      }
+      return guides.get();
+    }
+    if (guides && next_frame > last_guides_frame + kGuideRest_frames && completed_frame() >= last_guides_frame) {
+      guides.reset();
+    }
+    return nullptr;
+  }
+
   void submit(std::span<const VkCommandBuffer> buffers, VkSemaphore wait_before, VkSemaphore signal_after) {
     std::array<VkCommandBufferSubmitInfo, kCommandBuffers> infos{};
     for (std::size_t i = 0; i < buffers.size(); ++i) {
@@ -160,21 +181,22 @@ struct FrameRenderer::Impl {
   }
 
   void collect_times() {
+    std::uint64_t done = 0;
+    check(vkGetSemaphoreCounterValue(device.handle(), timeline, &done), "vkGetSemaphoreCounterValue");
     for (std::uint64_t age = kFrameSlots; age >= 1; --age) {  // the oldest frame first
-      collect_times(slots[(next_frame + kFrameSlots - age) % kFrameSlots]);
+      FrameSlot& aged = slots[(next_frame + kFrameSlots - age) % kFrameSlots];
+      if (aged.has_untaken_times && aged.frame_work <= done) collect_times(aged);
     }
   }
 
   void collect_times(FrameSlot& finished) {
-    if (!finished.has_untaken_times) return;
-    const auto trace = finished.timer.read(kTrace, clock);
-    const auto resolved = finished.timer.read(kResolve, clock);
-    if (!trace || !resolved) return;
+    const GpuInterval trace = finished.timer.read(kTrace, clock);
+    const GpuInterval resolved = finished.timer.read(kResolve, clock);
     finished.has_untaken_times = false;
     times.push_back({finished.frame,
-                     *trace,
-                     *resolved,
-                     {trace->begin_ns, resolved->end_ns},
+                     trace,
+                     resolved,
+                     {trace.begin_ns, resolved.end_ns},
                      clock.calibrated(),
                      clock.max_deviation_ns()});
     if (times.size() > kTimesKept) times.pop_front();
@@ -195,6 +217,10 @@ struct FrameRenderer::Impl {
   std::unique_ptr<const Passes> lookups;
   std::future<std::unique_ptr<const Passes>> lookups_to_come;
   std::uint64_t last_lookups_frame = 0;
+  // From the first frame with guides until long after the last.
+  std::unique_ptr<GuidePass> guides;
+  std::future<std::unique_ptr<GuidePass>> guides_to_come;
+  std::uint64_t last_guides_frame = 0;
   const Passes* used = &picture;  // of the frame recorded last
   GpuClock clock;
   VkSemaphore timeline;
@@ -270,9 +296,11 @@ FrameRenderer::FrameRenderer(const Device& device, ProbeStore& store, const Fram
 
 FrameRenderer::~FrameRenderer() = default;
 
-void FrameRenderer::set_timed(bool timed) { impl_->is_timed = timed; }
+void FrameRenderer::set_timed(bool timed) {
+  impl_->is_timed = timed;
+}
 
-void FrameRenderer::record(const FrameTarget& target) {
+void FrameRenderer::record(const FrameTarget& target, const Guides& guides) {
   Impl& impl = *impl_;
   const TracerOptions& tracer = impl.options.tracer;
   if (target.format != impl.options.target_format || target.depth_format != impl.options.depth_format ||
@@ -318,8 +346,17 @@ void FrameRenderer::record(const FrameTarget& target) {
   if (slot.is_timed) slot.timer.begin(slot.commands[kResolve], kResolve);
   passes.resolve.record(slot.commands[kResolve], constants, target, slot.layer_views);
   if (passes.depth) passes.depth->record(slot.commands[kResolve], constants, target, slot.depth_views);
+  if (GuidePass* guide_pass = impl.choose_guides(guides.any())) {
+    guide_pass->record(slot.commands[kResolve], impl.slot_index(), constants, passes.tracer.distance(), target,
+                       slot.layer_views, guides);
+  }
   if (slot.is_timed) slot.timer.end(slot.commands[kResolve], kResolve);
   check(vkEndCommandBuffer(slot.commands[kResolve]), "vkEndCommandBuffer");
+  if (slot.is_timed) {
+    begin_commands(slot.commands[kTimesCommands]);
+    slot.timer.bring(slot.commands[kTimesCommands]);
+    check(vkEndCommandBuffer(slot.commands[kTimesCommands]), "vkEndCommandBuffer");
+  }
   impl.target = target;
   impl.is_recorded = true;
   impl.is_written = false;
@@ -353,8 +390,10 @@ std::uint64_t FrameRenderer::submit() {
   Impl& impl = *impl_;
   if (!impl.is_recorded || !impl.is_written) throw std::logic_error("a frame is submitted after record and write");
   FrameSlot& slot = impl.slot();
-  impl.submit({slot.commands.data(), kPasses}, impl.target.wait_before, impl.target.signal_after);
+  const std::uint32_t buffers = slot.is_timed ? kTimesCommands + 1 : kPasses;
+  impl.submit({slot.commands.data(), buffers}, impl.target.wait_before, impl.target.signal_after);
   slot.frame = impl.next_frame;
+  slot.frame_work = slot.last_work;
   slot.has_untaken_times = slot.is_timed;
   impl.is_recorded = impl.is_written = false;
   return impl.next_frame++;

@@ -15,6 +15,7 @@
 #include "render/device.h"
 #include "render/frame_target.h"
 #include "render/gpu_clock.h"
+#include "render/guide_pass.h"
 #include "render/hidden_tiles.h"
 #include "render/probe_store.h"
 #include "render/side_view.h"
@@ -23,6 +24,8 @@
 namespace probewalk {
 
 inline constexpr std::uint32_t kFrameSlots = 2;
+// From one teleport to the next it pays to keep what draws the aim.
+inline constexpr std::uint64_t kGuideRest_frames = 500;
 
 struct FrameRendererOptions {
   TracerOptions tracer;
@@ -59,8 +62,10 @@ class FrameRenderer {
   // Whether frames recorded from now on are timed on the device; they are unless told otherwise.
   void set_timed(bool timed);
   // Waits until the frame before the last has finished, takes in what has streamed, records the passes. The target has
-  // the options' formats, as many layers as there are views, and an extent within theirs.
-  void record(const FrameTarget& target);
+  // the options' formats, as many layers as there are views, and an extent within theirs. Guides are drawn over the
+  // picture. What they need is made on a thread of its own when a frame first has some, which goes without until then,
+  // and is given up when none has had any for kGuideRest_frames.
+  void record(const FrameTarget& target, const Guides& guides = {});
   // Writes the views' poses and the settings; callable again until submit. As many views as in the options.
   void write(std::span<const ViewConstants> views, const FrameSettings& settings);
   // Shows the look-ups of each pixel instead of the picture, or the picture again. What that needs is made on a thread

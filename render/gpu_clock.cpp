@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "render/check.h"
+#include "render/one_shot.h"
 
 namespace probewalk {
 namespace {
@@ -73,7 +74,10 @@ std::int64_t GpuClock::to_ns(std::uint64_t device_ticks) const {
   return base_ns_ + (is_before ? -distance_ns : distance_ns);
 }
 
-PassTimer::PassTimer(const Device& device, std::uint32_t passes) : device_(&device), passes_(passes) {
+PassTimer::PassTimer(const Device& device, std::uint32_t passes)
+    : device_(&device),
+      passes_(passes),
+      ticks_(device, VkDeviceSize{2} * passes * sizeof(std::uint64_t), BufferMemory::kReadback) {
   VkQueryPoolCreateInfo info{VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO};
   info.queryType = VK_QUERY_TYPE_TIMESTAMP;
   info.queryCount = 2 * passes;
@@ -85,9 +89,14 @@ PassTimer::~PassTimer() {
 }
 
 PassTimer::PassTimer(PassTimer&& other) noexcept
-    : device_(other.device_), pool_(std::exchange(other.pool_, VK_NULL_HANDLE)), passes_(other.passes_) {}
+    : device_(other.device_),
+      pool_(std::exchange(other.pool_, VK_NULL_HANDLE)),
+      passes_(other.passes_),
+      ticks_(std::move(other.ticks_)) {}
 
-void PassTimer::reset() { vkResetQueryPool(device_->handle(), pool_, 0, 2 * passes_); }
+void PassTimer::reset() {
+  vkResetQueryPool(device_->handle(), pool_, 0, 2 * passes_);
+}
 
 void PassTimer::begin(VkCommandBuffer commands, std::uint32_t pass) const {
   vkCmdWriteTimestamp2(commands, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, pool_, 2 * pass);
@@ -97,13 +106,16 @@ void PassTimer::end(VkCommandBuffer commands, std::uint32_t pass) const {
   vkCmdWriteTimestamp2(commands, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, pool_, 2 * pass + 1);
 }
 
-std::optional<GpuInterval> PassTimer::read(std::uint32_t pass, const GpuClock& clock) const {
-  std::array<std::uint64_t, 2> ticks{};
-  const VkResult result = check(vkGetQueryPoolResults(device_->handle(), pool_, 2 * pass, 2, sizeof(ticks),
-                                                      ticks.data(), sizeof(ticks[0]), VK_QUERY_RESULT_64_BIT),
-                                "vkGetQueryPoolResults");
-  if (result == VK_NOT_READY) return std::nullopt;
-  return GpuInterval{clock.to_ns(ticks[0]), clock.to_ns(ticks[1])};
+void PassTimer::bring(VkCommandBuffer commands) const {
+  vkCmdCopyQueryPoolResults(commands, pool_, 0, 2 * passes_, ticks_.handle(), 0, sizeof(std::uint64_t),
+                            VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT);
+  make_visible_to_cpu(commands);
+}
+
+GpuInterval PassTimer::read(std::uint32_t pass, const GpuClock& clock) const {
+  ticks_.invalidate();
+  const auto ticks = ticks_.mapped_as<const std::uint64_t>().subspan(std::size_t{2} * pass, 2);
+  return {clock.to_ns(ticks[0]), clock.to_ns(ticks[1])};
 }
 
 }  // namespace probewalk

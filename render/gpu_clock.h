@@ -4,8 +4,8 @@
 #include <volk.h>
 
 #include <cstdint>
-#include <optional>
 
+#include "render/buffer.h"
 #include "render/device.h"
 
 namespace probewalk {
@@ -41,7 +41,8 @@ class GpuClock {
 };
 
 // Time stamps around the passes of one frame. Each pass must have a command buffer of its own: rasterisers that defer
-// work charge a draw to whatever follows it in the same buffer (seen on llvmpipe).
+// work charge a draw to whatever follows it in the same buffer (seen on llvmpipe). The device itself brings the stamps
+// to where the CPU reads them: vkGetQueryPoolResults makes some drivers (lavapipe) wait for all that is in flight.
 class PassTimer {
  public:
   PassTimer(const Device& device, std::uint32_t passes);
@@ -53,13 +54,16 @@ class PassTimer {
   void reset();
   void begin(VkCommandBuffer commands, std::uint32_t pass) const;
   void end(VkCommandBuffer commands, std::uint32_t pass) const;
-  // Does not block; empty until the pass has finished.
-  std::optional<GpuInterval> read(std::uint32_t pass, const GpuClock& clock) const;
+  // Once a frame, after all passes, in a command buffer after theirs.
+  void bring(VkCommandBuffer commands) const;
+  // Once bring()'s commands have finished, and no sooner.
+  GpuInterval read(std::uint32_t pass, const GpuClock& clock) const;
 
  private:
   const Device* device_;
   VkQueryPool pool_ = VK_NULL_HANDLE;
   std::uint32_t passes_;
+  Buffer ticks_;  // two a pass
 };
 
 }  // namespace probewalk

@@ -18,7 +18,7 @@ OverlayPass::OverlayPass(const Device& device, VkFormat format, const OverlayAtl
       atlas_px_(atlas.extent),
       atlas_(device, (atlas.coverage.size() + 3) / 4 * 4, BufferMemory::kShared),
       pictures_(slots),
-      pipeline_(Pipeline::blended(device, spirv::k_overlay_vert, spirv::k_overlay_frag, format)) {
+      pipeline_(Pipeline::blended(device, nullptr, spirv::k_overlay_vert, spirv::k_overlay_frag, format)) {
   std::memcpy(atlas_.mapped(), atlas.coverage.data(), atlas.coverage.size());
   atlas_.flush();
 }

@@ -78,6 +78,17 @@ StorageImageSet::StorageImageSet(const Device& device, VkShaderStageFlags stages
   vkUpdateDescriptorSets(device_, count, writes.data(), 0, nullptr);
 }
 
+void StorageImageSet::show(std::uint32_t binding, VkImageView image) const {
+  const VkDescriptorImageInfo info{VK_NULL_HANDLE, image, VK_IMAGE_LAYOUT_GENERAL};
+  VkWriteDescriptorSet write{VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET};
+  write.dstSet = set_;
+  write.dstBinding = binding;
+  write.descriptorCount = 1;
+  write.descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
+  write.pImageInfo = &info;
+  vkUpdateDescriptorSets(device_, 1, &write, 0, nullptr);
+}
+
 StorageImageSet::~StorageImageSet() {
   vkDestroyDescriptorPool(device_, pool_, nullptr);
   vkDestroyDescriptorSetLayout(device_, layout_, nullptr);
@@ -134,9 +145,10 @@ Pipeline Pipeline::full_screen(const Device& device, const StorageImageSet& imag
   return graphics(device, &images, VK_SHADER_STAGE_FRAGMENT_BIT, {vertex_spirv, fragment_spirv}, format, false);
 }
 
-Pipeline Pipeline::blended(const Device& device, std::span<const std::uint32_t> vertex_spirv,
-                           std::span<const std::uint32_t> fragment_spirv, VkFormat format) {
-  return graphics(device, nullptr, VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT,
+Pipeline Pipeline::blended(const Device& device, const StorageImageSet* images,
+                           std::span<const std::uint32_t> vertex_spirv, std::span<const std::uint32_t> fragment_spirv,
+                           VkFormat format) {
+  return graphics(device, images, VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT,
                   {vertex_spirv, fragment_spirv}, format, true);
 }
 

@@ -21,6 +21,9 @@ class StorageImageSet {
   StorageImageSet(const StorageImageSet&) = delete;
   StorageImageSet& operator=(const StorageImageSet&) = delete;
 
+  // Binds another image, like the one before. The device must be done with commands that read the set.
+  void show(std::uint32_t binding, VkImageView image) const;
+
   VkDescriptorSetLayout layout() const { return layout_; }
   VkDescriptorSet set() const { return set_; }
 
@@ -36,7 +39,7 @@ struct PushConstants {
   VkDeviceAddress constants = 0;  // where the rest lies
   std::uint32_t view = 0;         // that a draw is for
   std::uint32_t reserved = 0;
-  VkDeviceAddress list = 0;  // of edge pixels, where a pass fills or reads one (shaders/shared/edge_list.h)
+  VkDeviceAddress list = 0;  // what a pass has beside: edge pixels (shaders/shared/edge_list.h), guides (guides.h)
 };
 
 // Owns a pipeline and its layout.
@@ -50,9 +53,10 @@ class Pipeline {
                               std::span<const std::uint32_t> vertex_spirv,
                               std::span<const std::uint32_t> fragment_spirv, VkFormat format);
   // Triangles that the vertex shader fetches by itself, laid over a colour attachment by their alpha. Both shaders see
-  // the push constants; no images.
-  static Pipeline blended(const Device& device, std::span<const std::uint32_t> vertex_spirv,
-                          std::span<const std::uint32_t> fragment_spirv, VkFormat format);
+  // the push constants, the fragment shader `images`, if any.
+  static Pipeline blended(const Device& device, const StorageImageSet* images,
+                          std::span<const std::uint32_t> vertex_spirv, std::span<const std::uint32_t> fragment_spirv,
+                          VkFormat format);
   ~Pipeline();
   Pipeline(Pipeline&& other) noexcept;
   Pipeline& operator=(Pipeline&&) = delete;

@@ -11,9 +11,6 @@
 namespace probewalk {
 namespace {
 
-// Small, so that what a few rooms take is close to what is reserved.
-constexpr std::uint64_t kGrowth_bytes = 32u << 20;
-
 std::uint64_t largest_buffer_bytes(const Device& device) {
   VkPhysicalDeviceMaintenance4Properties sizes{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MAINTENANCE_4_PROPERTIES};
   VkPhysicalDeviceMaintenance3Properties allocations{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MAINTENANCE_3_PROPERTIES,
@@ -51,6 +48,19 @@ void ProbeArena::add_block(std::uint64_t size_bytes) {
   blocks_.emplace_back(device_, size_bytes);
 }
 
+// Where the device has no room for as much, for half of it, at least for what is asked for.
+void ProbeArena::grow(std::uint64_t least_bytes) {
+  while (true) {
+    const std::uint64_t bytes = std::min(std::max(least_bytes, growth_bytes_), largest_block_bytes_);
+    try {
+      return add_block(bytes);
+    } catch (const VulkanError& error) {
+      if (error.result != VK_ERROR_OUT_OF_DEVICE_MEMORY || bytes <= least_bytes) throw;
+    }
+    growth_bytes_ /= 2;
+  }
+}
+
 bool ProbeArena::take(Block& block, std::uint64_t size_bytes, Piece& piece) {
   VmaVirtualAllocationCreateInfo info{};
   info.size = size_bytes;
@@ -75,7 +85,7 @@ ProbeArena::Piece ProbeArena::allocate(std::uint64_t size_bytes) {
     if (take(block, size_bytes, piece)) return piece;
   }
   if (grows_ && size_bytes <= largest_block_bytes_) {
-    add_block(std::min(std::max(size_bytes, kGrowth_bytes), largest_block_bytes_));
+    grow(size_bytes);
     if (take(blocks_.back(), size_bytes, piece)) return piece;
   }
   throw VulkanError(VK_ERROR_OUT_OF_DEVICE_MEMORY,
@@ -87,6 +97,7 @@ void ProbeArena::give_back(const Piece& piece) {
   vmaVirtualFree(piece.block_->pieces, piece.allocation_);
   if (grows_ && vmaIsVirtualBlockEmpty(piece.block_->pieces)) {
     blocks_.remove_if([&](const Block& block) { return &block == piece.block_; });
+    growth_bytes_ = kGrowth_bytes;
   }
 }
 

@@ -86,7 +86,11 @@ class ProbeArena {
     VmaVirtualBlock_T* pieces = nullptr;
   };
 
+  // Small, so that what a few rooms take is close to what is reserved.
+  static constexpr std::uint64_t kGrowth_bytes = 32u << 20;
+
   void add_block(std::uint64_t size_bytes);
+  void grow(std::uint64_t least_bytes);
   bool take(Block& block, std::uint64_t size_bytes, Piece& piece);
   void give_back(const Piece& piece);
 
@@ -94,6 +98,7 @@ class ProbeArena {
   const bool grows_;
   const std::uint64_t largest_block_bytes_;
   mutable std::mutex mutex_;
+  std::uint64_t growth_bytes_ = kGrowth_bytes;  // less where the device had no room for as much
   std::list<Block> blocks_;
 };
 

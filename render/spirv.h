@@ -20,6 +20,8 @@ extern const std::span<const std::uint32_t> k_resolve_vert;
 extern const std::span<const std::uint32_t> k_resolve_frag;
 extern const std::span<const std::uint32_t> k_depth_frag;
 extern const std::span<const std::uint32_t> k_lookups_frag;
+extern const std::span<const std::uint32_t> k_guides_vert;
+extern const std::span<const std::uint32_t> k_guides_frag;
 extern const std::span<const std::uint32_t> k_overlay_vert;
 extern const std::span<const std::uint32_t> k_overlay_frag;
 

@@ -25,6 +25,14 @@ VkExtent2D eye_size_or_default(const DisplayOptions& options) {
   return options.eye_size.width > 0 ? options.eye_size : kDefaultEyeSize;
 }
 
+LocomotionOptions locomotion_of(const DisplayOptions& options, const char* default_vignette,
+                                double default_eye_height_m) {
+  LocomotionOptions locomotion = options.locomotion;
+  locomotion.eye_height_m = options.eye_height_m.value_or(default_eye_height_m);
+  locomotion.vignette_clear_rad = vignette_clear_rad(options.vignette.value_or(default_vignette));
+  return locomotion;
+}
+
 // The runtime's hooks, with what a mirror needs besides.
 DeviceHooks with_window(DeviceHooks hooks, const DeviceHooks& window) {
   const auto append = [](std::vector<std::string>& to, const std::vector<std::string>& more) {
@@ -38,14 +46,17 @@ DeviceHooks with_window(DeviceHooks hooks, const DeviceHooks& window) {
 
 // Device, source and mirror for a runtime; without a window also where a desktop or a device cannot mirror.
 void open_mirrored(Display& display, const DisplayOptions& options, const FloorMap& floor, const Pose& start) {
-  const HeadsetOptions headset{options.eye_size, options.seated, options.locomotion};
+  const HeadsetOptions headset{options.eye_size, options.seated,
+                               locomotion_of(options, "medium", options.seated ? kSeatedEyeHeight_m : kEyeHeight_m),
+                               options.overlay};
   const ShownEyes shown = options.window_eyes.value_or(ShownEyes::kLeft);
   if (shown != ShownEyes::kNone) {
     try {
       const VkExtent2D size =
           shown == ShownEyes::kSpectator
               ? kSpectatorSize
-              : window_size({options.eye_size.width > 0 ? options.eye_size : kMirrorSize, shown, options.eyes, {}, nullptr});
+              : window_size(
+                    {options.eye_size.width > 0 ? options.eye_size : kMirrorSize, shown, options.eyes, {}, nullptr});
       display.window = std::make_unique<Window>("Probewalk: mirror", size);
       display.device = std::make_unique<Device>(
           with_window(display.runtime->device_hooks(), display.window->device_hooks()), options.device);
@@ -69,7 +80,8 @@ Display open_window(const DisplayOptions& options, const FloorMap& floor, const 
   ShownEyes shown = options.window_eyes.value_or(ShownEyes::kBoth);
   // A headset's mirror, or none: without a headset the window is what there is to see.
   if (shown == ShownEyes::kNone || shown == ShownEyes::kSpectator) shown = ShownEyes::kBoth;
-  const WindowOptions window{eye_size_or_default(options), shown, options.eyes, options.locomotion, options.overlay};
+  const WindowOptions window{eye_size_or_default(options), shown, options.eyes,
+                             locomotion_of(options, "off", kEyeHeight_m), options.overlay};
   Display display;
   display.window = std::make_unique<Window>("Probewalk", window_size(window));
   display.device = std::make_unique<Device>(display.window->device_hooks(), options.device);

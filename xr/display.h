@@ -20,6 +20,9 @@ class OpenXrInstance;
 class OverlayBoard;
 class Window;
 
+// A sitting wearer's eyes over the floor: a seat's 0.43 m and 0.77 m from there to the eyes, as adults are on average.
+inline constexpr double kSeatedEyeHeight_m = 1.2;
+
 enum class DisplayChoice { kAuto, kHeadset, kWindow, kOffscreen };
 
 struct DisplayOptions {
@@ -27,8 +30,11 @@ struct DisplayOptions {
   VkExtent2D eye_size{0, 0};  // 0 = the display's own choice
   // Of the window, and of the mirror beside a headset. Empty = both in a window of its own, the left one in a mirror.
   std::optional<ShownEyes> window_eyes;
-  OverlayBoard* overlay = nullptr;  // of the window or the mirror; outlives every display
+  OverlayBoard* overlay = nullptr;  // of the window or the mirror, and of the headset; outlives every display
   bool seated = false;
+  // Goes over the locomotion's. Default: kSeatedEyeHeight_m for a seated wearer, else kEyeHeight_m.
+  std::optional<double> eye_height_m;
+  std::optional<std::string> vignette;  // a name of vignette_levels(); default: medium in a headset, off in a window
   bool offscreen_in_real_time = false;  // at the pace of a display, not on a fixed clock
   LocomotionOptions locomotion;
   EyeGeometry eyes;  // window and offscreen, in the viewer's metres; a headset has its own

@@ -36,8 +36,9 @@ float Blink::darkness() const {
   return 0.0f;
 }
 
-void Ramp::advance(bool up, double dt_s) {
-  value_ = std::clamp(value_ + (up ? dt_s / up_s_ : -dt_s / down_s_), 0.0, 1.0);
+void Ramp::advance_towards(double target, double dt_s) {
+  const double wanted = std::clamp(target, 0.0, 1.0);
+  value_ = std::clamp(wanted, value_ - dt_s / down_s_, value_ + dt_s / up_s_);
 }
 
 }  // namespace probewalk

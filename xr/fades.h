@@ -25,11 +25,13 @@ class Blink {
   glm::dvec3 target_m_{0.0};
 };
 
-// Towards 1 while something is the case and back to 0 afterwards, over a short distance of time rather than at once.
+// Towards 1 while something is the case and back to 0 afterwards, over a short distance of time rather than at once; or
+// towards how much of it is the case.
 class Ramp {
  public:
   explicit Ramp(double up_s, double down_s) : up_s_(up_s), down_s_(down_s) {}
-  void advance(bool up, double dt_s);
+  void advance(bool up, double dt_s) { advance_towards(up ? 1.0 : 0.0, dt_s); }
+  void advance_towards(double target, double dt_s);  // 0 to 1
   float value() const { return static_cast<float>(value_); }
 
  private:

@@ -13,6 +13,7 @@
 #include "render/depth_range.h"
 #include "render/device.h"
 #include "render/frame_target.h"
+#include "render/guides.h"
 #include "render/hidden_tiles.h"
 #include "xr/latency/frame_record.h"
 #include "xr/walkable.h"
@@ -90,6 +91,8 @@ class FrameSource {
 
   // How dark locomotion wants the picture: 0 = as it is, 1 = black (a teleport's blink).
   virtual float fade() const { return 0.0f; }
+  // While locomotion moves the view smoothly: how far it is narrowed.
+  virtual std::optional<VignetteShape> vignette() const { return {}; }
   // While the user aims a teleport: its way, in the world.
   virtual const FloorArc* aim() const { return nullptr; }
   // Whether a person's head moves the view, which no wall holds back.

@@ -27,7 +27,7 @@ glm::dvec2 out_of_dead_zone(glm::dvec2 stick) {
 }  // namespace
 
 Locomotion::Locomotion(const FloorMap& floor, const LocomotionOptions& options)
-    : floor_(floor), options_(options) {
+    : floor_(floor), options_(options), vignette_(options.vignette_clear_rad) {
   rig_.scale = options.world_scale;
 }
 
@@ -68,29 +68,33 @@ void Locomotion::advance(const HeadPose& head, const MoveInput& input, double dt
     }
     stand_over(head, *target_m);
   }
-  turn(head, input.turn, dt_s);
-  walk(head, input, dt_s);
+  const double turned = turn(head, input.turn, dt_s), walked = walk(head, input, dt_s);
+  vignette_.advance(std::max(turned, walked), dt_s);
   take_aim(head, input);
   if (input.recentre) recentre();
 }
 
-void Locomotion::turn(const HeadPose& head, double input, double dt_s) {
+double Locomotion::turn(const HeadPose& head, double input, double dt_s) {
   if (options_.turn == TurnStyle::kSmooth) {
     const double rate = out_of_dead_zone(input);
-    if (rate == 0.0) return;
-    rig_ = rig_.turned_about(head.position_m, -rate * kTurnSpeed_rad_s * dt_s);
-  } else if (options_.turn == TurnStyle::kSnap) {
-    if (std::abs(input) < kSnapAgainBelow) snapped_ = false;
-    if (std::abs(input) < kSnapAt || std::exchange(snapped_, true)) return;
-    rig_ = rig_.turned_about(head.position_m, -std::copysign(options_.snap_rad, input));
+    if (rate != 0.0) rig_ = rig_.turned_about(head.position_m, -rate * kTurnSpeed_rad_s * dt_s);
+    return std::abs(rate);
   }
+  if (options_.turn == TurnStyle::kSnap) {
+    if (std::abs(input) < kSnapAgainBelow) snapped_ = false;
+    if (std::abs(input) >= kSnapAt && !std::exchange(snapped_, true)) {
+      rig_ = rig_.turned_about(head.position_m, -std::copysign(options_.snap_rad, input));
+    }
+  }
+  return 0.0;
 }
 
-void Locomotion::walk(const HeadPose& head, const MoveInput& input, double dt_s) {
+double Locomotion::walk(const HeadPose& head, const MoveInput& input, double dt_s) {
   // The head may have moved in its rig: the foot is under it.
   const glm::dvec3 head_m = rig_.world_from_rig(head.position_m);
   foot_m_.x = head_m.x;
   foot_m_.z = head_m.z;
+  const glm::dvec3 before_m = foot_m_;
   const glm::dvec2 wish = out_of_dead_zone(input.wish);
   if (wish != glm::dvec2(0)) {
     const double yaw_rad = rig_.yaw_rad + head.yaw_rad;
@@ -106,6 +110,8 @@ void Locomotion::walk(const HeadPose& head, const MoveInput& input, double dt_s)
   }
   smooth_floor_m_ += (foot_m_.y - smooth_floor_m_) * (1.0 - std::exp(-dt_s / kHeightSmoothing_s));
   set_height();
+  const double way_m = glm::length(glm::dvec2(foot_m_.x - before_m.x, foot_m_.z - before_m.z));
+  return way_m > 0.0 && dt_s > 0.0 ? way_m / (kWalkSpeed_m_s * rig_.scale * dt_s) : 0.0;
 }
 
 void Locomotion::step(glm::dvec2 move) {

@@ -9,6 +9,7 @@
 #include "content/scene/space.h"
 #include "xr/fades.h"
 #include "xr/rig.h"
+#include "xr/vignette.h"
 #include "xr/walkable.h"
 
 namespace probewalk {
@@ -34,6 +35,7 @@ struct LocomotionOptions {
   double world_scale = 1.0;    // metres of the scene to one of the wearer's; 0.01 to 100
   // Over the floor, of a resting head, in the wearer's metres. Counts where the rig's floor is not known.
   double eye_height_m = kEyeHeight_m;
+  double vignette_clear_rad = 0.0;  // see VignetteLevel
 };
 
 // Where a teleport is thrown from, in the rig. The direction has any length but 0.
@@ -85,12 +87,15 @@ class Locomotion {
   // Where the head is, at the height of an ordinary eye over its floor: an anchor that gives the same rig.
   Pose anchor(const HeadPose& head) const;
   float fade() const { return blink_.darkness(); }  // 0 = picture, 1 = black
+  // While sticks or keys move or turn the view, and a moment longer; nothing where walls hold it, at a snap, at a blink.
+  std::optional<VignetteShape> vignette() const { return vignette_.shape(); }
   // While the person aims: the way of the throw in the world. Its landing is where a teleport would lead. Else null.
   const FloorArc* aim() const { return aim_ ? &*aim_ : nullptr; }
 
  private:
-  void turn(const HeadPose& head, double input, double dt_s);
-  void walk(const HeadPose& head, const MoveInput& input, double dt_s);
+  // What they move the view by: 1 = kTurnSpeed_rad_s, kWalkSpeed_m_s.
+  double turn(const HeadPose& head, double input, double dt_s);
+  double walk(const HeadPose& head, const MoveInput& input, double dt_s);
   void step(glm::dvec2 move);
   void take_aim(const HeadPose& head, const MoveInput& input);
   void recentre();
@@ -106,6 +111,7 @@ class Locomotion {
   RigFloor rig_floor_;
   glm::dvec3 home_m_{0.0};  // the floor where the person last stood by choice
   Blink blink_;
+  Vignette vignette_;
   bool recentres_ = false;  // the blink under way
   bool snapped_ = false;    // and the stick has not come back since
   std::optional<FloorArc> aim_;

@@ -53,7 +53,7 @@ const char* words_of(HandAction action) {
     case kTurn:
       return "turns";
     case kRecentre:
-      return "recentres";
+      return "recentres, held the overlay";
     case kAim:
     case kPadPressed:
       break;

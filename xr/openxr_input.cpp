@@ -148,6 +148,7 @@ MoveInput OpenXrInput::poll(XrSession session, XrSpace space, XrTime time, XrRes
   result = xrSyncActions(session, &sync);
   if (result != XR_SUCCESS) return input;  // lost, or the focus went away meanwhile
   glm::dvec2 turn{0.0};
+  bool menu_down = false;
   for (const Hand& hand : hands_) {
     XrActionStateBoolean teleport, recentre;
     if (!read(session, HandAction::kTeleport, hand, teleport, result) ||
@@ -156,7 +157,7 @@ MoveInput OpenXrInput::poll(XrSession session, XrSpace space, XrTime time, XrRes
         !read_stick(session, HandAction::kTurn, hand, turn, result)) {
       return {};
     }
-    if (recentre.isActive && recentre.changedSinceLastSync && recentre.currentState) input.recentre = true;
+    menu_down = menu_down || (recentre.isActive && recentre.currentState);
     const bool let_go = teleport.isActive && teleport.changedSinceLastSync && !teleport.currentState;
     if (!(teleport.isActive && teleport.currentState) && !let_go) continue;
     XrSpaceLocation aim{XR_TYPE_SPACE_LOCATION};
@@ -172,6 +173,9 @@ MoveInput OpenXrInput::poll(XrSession session, XrSpace space, XrTime time, XrRes
     input.teleport = let_go;
   }
   input.turn = turn.x;
+  const Press menu = menu_.advance(menu_down, time);
+  input.recentre = menu == Press::kShort;
+  wants_overlay_ = wants_overlay_ || menu == Press::kHeld;
   return input;
 }
 

@@ -4,11 +4,13 @@
 #include <array>
 #include <glm/glm.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "xr/locomotion.h"
 #include "xr/openxr_bindings.h"
 #include "xr/openxr_instance.h"
+#include "xr/press.h"
 
 namespace probewalk {
 
@@ -26,6 +28,8 @@ class OpenXrInput {
 
   // To be called once a frame while the session is focused. The ray lies in `space`. A lost session shows in `result`.
   MoveInput poll(XrSession session, XrSpace space, XrTime time, XrResult& result);
+  // Whether the wearer has held the button since the last call that recentres when it is pressed shortly.
+  bool take_overlay_request() { return std::exchange(wants_overlay_, false); }
 
  private:
   struct Hand {
@@ -43,6 +47,8 @@ class OpenXrInput {
   std::array<XrAction, kHandActions> actions_{};  // destroyed with their set
   std::array<Hand, 2> hands_;                     // left, right
   std::vector<std::string> accepted_;
+  PressButton menu_;
+  bool wants_overlay_ = false;
 };
 
 }  // namespace probewalk

@@ -66,11 +66,15 @@ OpenXrSource::OpenXrSource(const OpenXrInstance& instance, const Device& device,
       device_(device),
       world_scale_(options.locomotion.world_scale),
       locomotion_(floor, options.locomotion),
-      anchor_(start) {
+      anchor_(start),
+      overlay_board_(options.overlay) {
   create_session();
   create_space(options.seated, options.locomotion.eye_height_m);
   input_ = std::make_unique<OpenXrInput>(instance, session_.get());
   create_swapchains(options.eye_size);
+  if (overlay_board_ != nullptr) {
+    overlay_ = std::make_unique<OpenXrOverlay>(device, session_.get(), format_, *overlay_board_);
+  }
 }
 
 void OpenXrSource::create_session() {
@@ -345,6 +349,14 @@ void OpenXrSource::move(double dt_s, XrTime time) {
     if (result != XR_ERROR_TIME_INVALID && !alive(result, "xrSyncActions")) return;
   }
   locomotion_.advance(head, input, dt_s);
+  if (input_->take_overlay_request() && overlay_board_ != nullptr) overlay_board_->toggle(OverlayPlace::kHeadset);
+}
+
+bool OpenXrSource::update_overlay() {
+  if (!overlay_ || frame_.views.empty()) return true;
+  const Head head = head_of(frame_.views);
+  const OpenXrOutcome outcome = overlay_->update(space_.get(), frame_.display_time, head.position_m, head.orientation);
+  return alive(outcome.result, outcome.call);
 }
 
 bool OpenXrSource::acquire(OpenXrSwapchain& swapchain) {
@@ -375,7 +387,7 @@ FrameTarget OpenXrSource::acquire(VkExtent2D drawn) {
 }
 
 void OpenXrSource::end(const FrameTiming& timing, const std::vector<ViewPose>& rendered_views) {
-  if (state_.source_state() == SourceState::kLost) return;
+  if (state_.source_state() == SourceState::kLost || !update_overlay()) return;
   const auto queue = lock_queue();
   const bool drawn = color_->image() != VK_NULL_HANDLE;
   for (OpenXrSwapchain* swapchain : {color_.get(), depth_.get()}) {
@@ -409,11 +421,12 @@ void OpenXrSource::end(const FrameTiming& timing, const std::vector<ViewPose>& r
   projection.space = space_.get();
   projection.viewCount = static_cast<std::uint32_t>(layer_views.size());
   projection.views = layer_views.data();
-  const std::array layers{reinterpret_cast<const XrCompositionLayerBaseHeader*>(&projection)};
+  std::array layers{reinterpret_cast<const XrCompositionLayerBaseHeader*>(&projection),
+                    overlay_ ? overlay_->layer() : nullptr};
   XrFrameEndInfo info{XR_TYPE_FRAME_END_INFO};
   info.displayTime = frame_.display_time;
   info.environmentBlendMode = blend_mode_;
-  info.layerCount = shown ? 1 : 0;
+  info.layerCount = !shown ? 0 : layers[1] != nullptr ? 2 : 1;
   info.layers = layers.data();
   XrResult result = XR_SUCCESS;
   frame_.outcome.end = timed([&] { result = xrEndFrame(session_.get(), &info); });

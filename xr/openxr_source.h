@@ -13,6 +13,7 @@
 #include "xr/locomotion.h"
 #include "xr/openxr_input.h"
 #include "xr/openxr_instance.h"
+#include "xr/openxr_overlay.h"
 #include "xr/openxr_swapchain.h"
 #include "xr/session_state.h"
 
@@ -22,6 +23,7 @@ struct HeadsetOptions {
   VkExtent2D eye_size{0, 0};  // 0 = what the runtime recommends
   bool seated = false;        // the head's resting place is at the locomotion's eye height, wherever the floor is
   LocomotionOptions locomotion;
+  OverlayBoard* overlay = nullptr;  // shown and hidden by a held menu button; outlives the source
 };
 
 // Nothing but the wearer moves the view, by head, hands and sticks (locomotion.h); teleports blink. When runtime, session or service goes away no call throws:
@@ -48,6 +50,7 @@ class OpenXrSource final : public FrameSource {
   // which differ from the located ones only where a path is replayed.
   void end(const FrameTiming& timing, const std::vector<ViewPose>& rendered_views) override;
   float fade() const override { return locomotion_.fade(); }
+  std::optional<VignetteShape> vignette() const override { return locomotion_.vignette(); }
   const FloorArc* aim() const override { return locomotion_.aim(); }
   bool head_is_real() const override { return true; }
   std::optional<FrameOutcome> outcome() const override { return frame_.outcome; }
@@ -91,6 +94,8 @@ class OpenXrSource final : public FrameSource {
   static Head head_of(const std::vector<XrView>& views);
   static HeadPose in_rig(const Head& head);
   void move(double dt_s, XrTime time);
+  // Before the frame ends; false when the runtime is gone.
+  bool update_overlay();
 
   const OpenXrInstance& instance_;
   const Device& device_;
@@ -108,6 +113,8 @@ class OpenXrSource final : public FrameSource {
 
   std::unique_ptr<OpenXrSwapchain> color_;
   std::unique_ptr<OpenXrSwapchain> depth_;  // null: the runtime takes no depth
+  OverlayBoard* const overlay_board_;       // null: there is no overlay
+  std::unique_ptr<OpenXrOverlay> overlay_;
   VkExtent2D extent_{};
   VkExtent2D drawn_{};  // of the image acquired last
   VkFormat format_ = VK_FORMAT_UNDEFINED;

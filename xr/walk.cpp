@@ -80,7 +80,9 @@ class Walk {
       : options_(options), pack_(pack), progress_(progress), display_options_(options.display) {
     display_options_.overlay = &books_.overlay;
     display_options_.offscreen_in_real_time = offscreen_in_real_time(options);
+    books_.shows_lookups = options.lookups;
     books_.overlay.show(options.overlay);
+    books_.overlay.show(options.headset_overlay, OverlayPlace::kHeadset);
   }
 
   WalkResult run();

@@ -45,6 +45,8 @@ struct WalkOptions {
   std::optional<double> ledger_cost_fraction;  // as it was measured, for the report
   std::string command;                         // the words that repeat the walk, for the report
   bool overlay = false;                        // shown from the start, where there is a window
+  bool lookups = false;                        // shown instead of the picture from the start
+  bool headset_overlay = false;                // shown to the wearer from the start
   DisplayOpener open_display;                  // how the first display is opened; empty = probewalk::open_display
   ChunkOpener open_chunks;                     // where the pack's chunks come from; empty = probewalk::open_source
 };

@@ -10,6 +10,7 @@
 #include "content/probe/probe_set.h"
 #include "render/view.h"
 #include "shaders/shared/display_transform.h"
+#include "shaders/shared/guides.h"
 #include "xr/latency/clock.h"
 #include "xr/latency/stopwatch.h"
 #include "xr/mirror.h"
@@ -17,6 +18,8 @@
 
 namespace probewalk {
 namespace {
+
+static_assert(FloorArc::kPoints <= kGuidePoints);
 
 constexpr auto kIdleSleep = std::chrono::milliseconds(5);
 
@@ -77,7 +80,7 @@ LegEnd WalkLeg::run() {
       const WindowInput input = display_.mirror->poll();
       if (input.closed) return LegEnd::kClosed;
       screenshot_ = screenshot_ || input.screenshot;
-      if (input.overlay) books_.overlay.toggle();
+      if (input.overlay) books_.overlay.toggle(OverlayPlace::kWindow);
       books_.shows_lookups = books_.shows_lookups != input.lookups;
     }
     if (books_.frames && books_.frame >= *books_.frames) return LegEnd::kDone;
@@ -160,8 +163,7 @@ void WalkLeg::book(FrameRecord& record, std::uint64_t drawn) {
   record.pipelines_built = built - std::exchange(pipelines_built_, built);
   book_.add(record, drawn);
   if (books_.overlay.is_shown()) note_for_overlay(record);
-  // Between the frames: asked for time stamps, some drivers (lavapipe) wait for the frames in flight, and a runtime's
-  // answers take their time too.
+  // Between the frames: a runtime's answers take their time.
   book_.add_ledger_time(stamped([&] { take_late_answers(); }));
 }
 
@@ -188,7 +190,7 @@ std::vector<ViewPose> WalkLeg::draw(const FrameTiming& timing, FrameRecord& reco
     if (target.image == VK_NULL_HANDLE) return;
     books_.shows_lookups = books_.shows_lookups != source_.take_lookups_request();
     renderer_.show_lookups(books_.shows_lookups);
-    renderer_.record(target);
+    renderer_.record(target, guides());
     record.blocked_ns += renderer_.blocked_ns();
   });
   if (target.image == VK_NULL_HANDLE) return {};
@@ -198,7 +200,7 @@ std::vector<ViewPose> WalkLeg::draw(const FrameTiming& timing, FrameRecord& reco
   while (settle_ && !rooms_.all_shown()) {
     write(views, target.extent);
     renderer_.submit();
-    renderer_.record(target);
+    renderer_.record(target, guides());
   }
 
   record.locate_late = stamped([&] {
@@ -218,6 +220,16 @@ std::vector<ViewPose> WalkLeg::draw(const FrameTiming& timing, FrameRecord& reco
                           head.position_m, head.orientation, views});
   }
   return views;
+}
+
+Guides WalkLeg::guides() const {
+  Guides guides;
+  if (books_.view.is_replay()) return guides;
+  guides.vignette = source_.vignette();
+  if (const FloorArc* arc = source_.aim()) {
+    guides.aim = AimGuide{arc->points_m, arc->landing_m, options_.display.locomotion.world_scale, !arc->is_straight};
+  }
+  return guides;
 }
 
 void WalkLeg::write(const std::vector<ViewPose>& views, VkExtent2D extent) {

@@ -49,6 +49,8 @@ class WalkLeg {
   // Draws into the source's next image; the views that were drawn, and the frame's number with the renderer.
   std::vector<ViewPose> draw(const FrameTiming& timing, FrameRecord& record, std::uint64_t& drawn);
   void write(const std::vector<ViewPose>& views, VkExtent2D extent);
+  // None where a path is replayed: it is shown as it was recorded. Valid until the source's next wait.
+  Guides guides() const;
   void save_pictures(const FrameTarget& target);
   void note_for_overlay(const FrameRecord& record);
   // Enters a frame that has ended.
@@ -78,7 +80,7 @@ class WalkLeg {
   FrameBook book_;
   std::uint32_t pipelines_built_ = 0;  // before the frame under way
   std::int64_t period_ns_ = 0;
-  bool keeps_books_ = true;            // of the frame under way
+  bool keeps_books_ = true;  // of the frame under way
   bool screenshot_ = false;
 };
 

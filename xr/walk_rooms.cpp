@@ -153,7 +153,7 @@ void WalkRooms::update(const ViewPose& head, const std::optional<glm::dvec3>& ai
 }
 
 void WalkRooms::settle() {
-  if (!streamer_.settle(walker_, kSettlePatience)) {
+  if (!streamer_.settle(walker_, kSettlePatience, [this] { report_errors(); })) {
     throw BadInput(fmt::format("{}: the rooms did not load within {} minutes; walk with --realtime to go on without",
                                pack_.path().string(), kSettlePatience.count()));
   }

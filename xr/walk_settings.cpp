@@ -33,6 +33,13 @@ double number(const json& value, const std::string& key, double least, double mo
   return number;
 }
 
+std::string name(const json& value, const std::string& key, const std::vector<std::string>& names) {
+  if (!value.is_string() || std::ranges::find(names, value.get<std::string>()) == names.end()) {
+    throw BadInput(fmt::format("\"{}\" is none of \"{}\"", key, fmt::join(names, "\", \"")));
+  }
+  return value.get<std::string>();
+}
+
 bool yes_or_no(const json& value, const std::string& key) {
   if (!value.is_boolean()) throw BadInput(fmt::format("\"{}\" is neither true nor false", key));
   return value.get<bool>();
@@ -45,11 +52,9 @@ WalkSettings parse(const std::string& text) {
   WalkSettings settings;
   for (const auto& [key, value] : root.items()) {
     if (key == "turn") {
-      const auto& names = turn_names();
-      if (!value.is_string() || std::ranges::find(names, value.get<std::string>()) == names.end()) {
-        throw BadInput(fmt::format("\"turn\" is none of \"{}\"", fmt::join(names, "\", \"")));
-      }
-      settings.turn = value.get<std::string>();
+      settings.turn = name(value, key, turn_names());
+    } else if (key == "vignette") {
+      settings.vignette = name(value, key, vignette_names());
     } else if (key == "world_scale") {
       settings.world_scale = number(value, key, kWorldScaleMin, kWorldScaleMax);
     } else if (key == "seated") {
@@ -70,9 +75,19 @@ const std::vector<std::string>& turn_names() {
   return names;
 }
 
+const std::vector<std::string>& vignette_names() {
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> all;
+    for (const VignetteLevel& level : vignette_levels()) all.emplace_back(level.name);
+    return all;
+  }();
+  return names;
+}
+
 WalkSettings over(const WalkSettings& first, const WalkSettings& second) {
   WalkSettings settings = first;
   if (!settings.turn) settings.turn = second.turn;
+  if (!settings.vignette) settings.vignette = second.vignette;
   if (!settings.world_scale) settings.world_scale = second.world_scale;
   if (!settings.seated) settings.seated = second.seated;
   if (!settings.eye_height_m) settings.eye_height_m = second.eye_height_m;
@@ -89,14 +104,16 @@ void apply(const WalkSettings& settings, DisplayOptions& options) {
     locomotion.turn = TurnStyle::kSnap;
     locomotion.snap_rad = (settings.turn == "45" ? 45.0 : 30.0) * std::numbers::pi / 180.0;
   }
+  if (settings.vignette) options.vignette = settings.vignette;
   if (settings.world_scale) locomotion.world_scale = *settings.world_scale;
   if (settings.seated) options.seated = *settings.seated;
-  if (settings.eye_height_m) locomotion.eye_height_m = *settings.eye_height_m;
+  if (settings.eye_height_m) options.eye_height_m = settings.eye_height_m;
 }
 
 std::string in_words(const WalkSettings& settings) {
   std::vector<std::string> words;
   if (settings.turn) words.push_back("turn " + *settings.turn);
+  if (settings.vignette) words.push_back("vignette " + *settings.vignette);
   if (settings.world_scale) words.push_back(fmt::format("world scale {}", *settings.world_scale));
   if (settings.seated) words.push_back(*settings.seated ? "seated" : "standing");
   if (settings.eye_height_m) words.push_back(fmt::format("eye height {} m", *settings.eye_height_m));
@@ -132,6 +149,7 @@ void write_walk_settings(const fs::path& file, const WalkSettings& settings) {
   if (file.empty()) throw BadInput("settings have no place: set XDG_CONFIG_HOME or HOME to an absolute folder");
   json root = json::object();
   if (settings.turn) root["turn"] = *settings.turn;
+  if (settings.vignette) root["vignette"] = *settings.vignette;
   if (settings.world_scale) root["world_scale"] = *settings.world_scale;
   if (settings.seated) root["seated"] = *settings.seated;
   if (settings.eye_height_m) root["eye_height_m"] = *settings.eye_height_m;

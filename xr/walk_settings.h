@@ -13,7 +13,8 @@ namespace probewalk {
 
 // Empty = not said.
 struct WalkSettings {
-  std::optional<std::string> turn;  // a name of turn_names()
+  std::optional<std::string> turn;      // a name of turn_names()
+  std::optional<std::string> vignette;  // a name of vignette_levels()
   std::optional<double> world_scale;  // kWorldScaleMin to kWorldScaleMax
   std::optional<bool> seated;
   std::optional<double> eye_height_m;  // kEyeHeightMin_m to kEyeHeightMax_m
@@ -26,6 +27,8 @@ inline constexpr double kEyeHeightMin_m = 0.3, kEyeHeightMax_m = 2.5;
 
 // "30", "45" (degrees of a snap), "smooth", "off".
 const std::vector<std::string>& turn_names();
+// "off", "low", "medium", "high".
+const std::vector<std::string>& vignette_names();
 
 // What `first` says, and of what it does not say what `second` does.
 WalkSettings over(const WalkSettings& first, const WalkSettings& second);

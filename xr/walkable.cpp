@@ -76,6 +76,7 @@ bool is_clear_way(const FloorMap& floor, glm::dvec3 from_m, glm::dvec3 to_m) {
 FloorArc arc_to_floor(const FloorMap& floor, glm::dvec3 origin_m, glm::dvec3 velocity_m_s, double gravity_m_s2,
                       double reach_m) {
   FloorArc arc;
+  arc.is_straight = gravity_m_s2 == 0.0;
   const double speed_m_s = glm::length(velocity_m_s);
   if (!(speed_m_s > 0.0) || !std::isfinite(speed_m_s)) return arc;
   const auto at = [&](double t_s) {

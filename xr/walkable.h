@@ -30,6 +30,7 @@ bool is_clear_way(const FloorMap& floor, glm::dvec3 from_m, glm::dvec3 to_m);
 struct FloorArc {
   std::vector<glm::dvec3> points_m;     // from the origin to where it ends; at most kPoints, equal times apart
   std::optional<glm::dvec3> landing_m;  // on walkable floor; nothing = it met a wall, furniture, the ceiling or nothing
+  bool is_straight = false;             // a ray
   static constexpr int kPoints = 33;
 };
 // `gravity_m_s2` 0 = a ray. Ends after `reach_m` along the way. A velocity of no length meets nothing.

@@ -39,7 +39,7 @@ SourceState WindowSource::poll() {
   input_ = window_.poll();
   screenshot_ = screenshot_ || input_.screenshot;
   lookups_ = lookups_ != input_.lookups;
-  if (input_.overlay && options_.overlay != nullptr) options_.overlay->toggle();
+  if (input_.overlay && options_.overlay != nullptr) options_.overlay->toggle(OverlayPlace::kWindow);
   if (lost_) return SourceState::kLost;
   if (input_.closed) return SourceState::kFinished;
   const double radians_per_px = options_.eyes.vertical_fov_rad / static_cast<double>(options_.eye_size.height);

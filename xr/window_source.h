@@ -45,6 +45,7 @@ class WindowSource final : public FrameSource {
   FrameTarget acquire(VkExtent2D drawn) override;
   void end(const FrameTiming& timing, const std::vector<ViewPose>& rendered_views) override;
   float fade() const override { return locomotion_.fade(); }
+  std::optional<VignetteShape> vignette() const override { return locomotion_.vignette(); }
   const FloorArc* aim() const override { return locomotion_.aim(); }
   bool take_screenshot_request() override;
   bool take_lookups_request() override;

@@ -6,6 +6,7 @@
 
 #include "content/error.h"
 #include "content/pack/pack_io.h"
+#include "content/thread_name.h"
 
 namespace probewalk {
 
@@ -70,6 +71,7 @@ void ChunkLoader::wait(std::chrono::milliseconds at_most) {
 }
 
 void ChunkLoader::work(std::stop_token stop, unsigned thread) {
+  name_this_thread("loader " + std::to_string(thread));
   while (true) {
     Request request;
     {

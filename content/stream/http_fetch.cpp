@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cstdlib>
 #include <mutex>
@@ -27,8 +28,12 @@ struct Transfer {
   std::uint64_t limit_bytes = 0;
   const std::function<bool()>& cancelled;
   std::size_t resumed_at = 0;
+  const std::function<void()>& on_quiet;
+  double quiet_s = 0.0;
   bool is_first_piece = true;
   bool is_too_long = false;
+  curl_off_t known_bytes = 0;  // that had come by then
+  std::chrono::steady_clock::time_point known_at = std::chrono::steady_clock::now();
 };
 
 std::size_t on_data(char* data, std::size_t size, std::size_t count, void* user) {
@@ -50,8 +55,18 @@ std::size_t on_data(char* data, std::size_t size, std::size_t count, void* user)
   return bytes;
 }
 
-int on_progress(void* user, curl_off_t, curl_off_t, curl_off_t, curl_off_t) {
-  return static_cast<const Transfer*>(user)->cancelled() ? 1 : 0;
+// Called about once a second, more often while bytes come.
+int on_progress(void* user, curl_off_t, curl_off_t came_bytes, curl_off_t, curl_off_t) {
+  Transfer& transfer = *static_cast<Transfer*>(user);
+  const auto now = std::chrono::steady_clock::now();
+  const double passed_s = std::chrono::duration<double>(now - transfer.known_at).count();
+  if (passed_s >= transfer.quiet_s) {
+    const double least = static_cast<double>(FetchLimits::kStall_bytes_s) * passed_s;
+    if (static_cast<double>(came_bytes - transfer.known_bytes) < least) transfer.on_quiet();
+    transfer.known_bytes = came_bytes;
+    transfer.known_at = now;
+  }
+  return transfer.cancelled() ? 1 : 0;
 }
 
 void check(CURLcode code, const char* option) {
@@ -138,6 +153,7 @@ struct HttpFetcher::Impl {
   std::mutex mutex;
   std::vector<Handle> idle;
   FetchCounts counts;
+  std::atomic<std::uint64_t> quiet{0};
 
   Handle take() {
     {
@@ -160,6 +176,11 @@ struct HttpFetcher::Impl {
     const std::lock_guard lock(mutex);
     ++counts.requests;
     counts.bytes += bytes;
+  }
+  void count_quiet(const std::string& url) {
+    const std::lock_guard lock(mutex);
+    counts.last_quiet = url;
+    ++quiet;
   }
   void count_failure(const std::string& reason) {
     const std::lock_guard lock(mutex);
@@ -209,9 +230,10 @@ std::vector<std::byte> HttpFetcher::get(const std::string& url, std::uint64_t li
   Handle handle = impl_->take();
   std::string place = url;  // where redirections have led
   int redirections = 0, in_vain = 0;
+  const std::function<void()> on_quiet = [&] { impl_->count_quiet(url); };
   while (true) {
     if (cancelled()) throw Interrupted(url + ": not wanted any more");
-    Transfer transfer{handle.get(), body, limit_bytes, cancelled, body.size()};
+    Transfer transfer{handle.get(), body, limit_bytes, cancelled, body.size(), on_quiet, impl_->limits.quiet_s};
     const CURLcode code = impl_->attempt(handle.get(), place, transfer);
     long status = 0;
     curl_easy_getinfo(handle.get(), CURLINFO_RESPONSE_CODE, &status);
@@ -239,6 +261,10 @@ std::vector<std::byte> HttpFetcher::get(const std::string& url, std::uint64_t li
 FetchCounts HttpFetcher::counts() const {
   const std::lock_guard lock(impl_->mutex);
   return impl_->counts;
+}
+
+std::uint64_t HttpFetcher::times_quiet() const {
+  return impl_->quiet;
 }
 
 std::string without_slash(std::string url) {

@@ -18,6 +18,7 @@ struct FetchLimits {
   double first_pause_s = 0.25;  // before the second attempt; doubles
   long connect_timeout_s = 10;
   long stall_timeout_s = 8;  // with less than kStall_bytes_s
+  double quiet_s = 2.0;      // with less than that: worth a word
 };
 
 struct FetchCounts {
@@ -25,6 +26,7 @@ struct FetchCounts {
   std::uint64_t failed = 0;  // those that did not bring what was missing
   std::uint64_t bytes = 0;   // of bodies
   std::string last_failure;  // the address, and what happened
+  std::string last_quiet;    // the address that was waited for as long as FetchLimits::quiet_s; empty = none
 };
 
 // Servers are trusted by the system's certificates, or those in the file that CURL_CA_BUNDLE or SSL_CERT_FILE names.
@@ -43,6 +45,8 @@ class HttpFetcher {
                              const std::function<bool()>& cancelled) const;
   // So far. Any thread.
   FetchCounts counts() const;
+  // How often an answer was waited for so long, so far. Any thread, any time: it is a number.
+  std::uint64_t times_quiet() const;
 
  private:
   struct Impl;

@@ -52,8 +52,24 @@ std::optional<SourceStatistics> HttpSource::statistics() const {
                           fetched.failed, damaged_, fetched.bytes, fetched.last_failure};
 }
 
+// Long before a silent server's requests have failed, the walker sees that rooms stay coarse, and wants to know why.
+std::optional<std::string> HttpSource::note_of_silence() {
+  const std::uint64_t chunks = chunks_;
+  if (silent_since_chunk_ && chunks > *silent_since_chunk_) {
+    silent_since_chunk_.reset();
+    quiet_known_ = fetcher_.times_quiet();
+    return url_ + ": the server delivers again";
+  }
+  const std::uint64_t quiet = fetcher_.times_quiet();
+  if (quiet == std::exchange(quiet_known_, quiet) || silent_since_chunk_) return std::nullopt;
+  silent_since_chunk_ = chunks;
+  return fetcher_.counts().last_quiet + ": the server is silent; what is there stays, the rest comes when it answers";
+}
+
 std::vector<std::string> HttpSource::take_notes() {
+  std::optional<std::string> silence = note_of_silence();
   const std::lock_guard lock(notes_mutex_);
+  if (silence) notes_.push_back(std::move(*silence));
   return std::exchange(notes_, {});
 }
 

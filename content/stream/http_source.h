@@ -22,11 +22,12 @@ class HttpSource final : public ChunkSource {
   std::vector<std::byte> read(const LevelEntry& level, const std::atomic<bool>& cancelled) const override;
   unsigned parallel_reads() const override { return 8; }
   std::optional<SourceStatistics> statistics() const override;
-  // That the cache takes nothing: once.
+  // That the cache takes nothing: once. That the server is silent, and that it delivers again.
   std::vector<std::string> take_notes() override;
 
  private:
   void keep(const LevelEntry& level, std::span<const std::byte> bytes) const;
+  std::optional<std::string> note_of_silence();
 
   std::string url_;
   ChunkCache cache_;
@@ -35,6 +36,9 @@ class HttpSource final : public ChunkSource {
   mutable std::atomic<bool> has_said_uncached_{false};
   mutable std::mutex notes_mutex_;
   mutable std::vector<std::string> notes_;
+  // Of the last call of take_notes.
+  std::uint64_t quiet_known_ = 0;
+  std::optional<std::uint64_t> silent_since_chunk_;  // how many had come when it was told to be silent
 };
 
 }  // namespace probewalk

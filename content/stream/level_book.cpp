@@ -71,11 +71,11 @@ int LevelBook::shown(std::uint32_t room) const {
 void LevelBook::set(LevelKey key, LevelStatus status) {
   Entry& entry = entries_[index(key)];
   if (is_held(entry.status)) held_bytes_ -= entry.bytes;
-  if (entry.status == LevelStatus::kLoading) --loading_;
+  if (entry.status == LevelStatus::kLoading) std::erase(loading_, key);
   if (key.level == 0 && is_open(entry.status)) --coarse_open_;
   entry.status = status;
   if (is_held(status)) held_bytes_ += entry.bytes;
-  if (status == LevelStatus::kLoading) ++loading_;
+  if (status == LevelStatus::kLoading) loading_.push_back(key);
   if (key.level == 0 && is_open(status)) ++coarse_open_;
 }
 

@@ -47,7 +47,8 @@ class LevelBook {
   void learn(LevelKey key, std::uint64_t bytes);
 
   std::uint64_t held_bytes() const { return held_bytes_; }      // loading and resident
-  std::uint32_t loading() const { return loading_; }            // levels
+  std::uint32_t loading() const { return static_cast<std::uint32_t>(loading_.size()); }  // levels
+  const std::vector<LevelKey>& loading_keys() const { return loading_; }                 // in no order
   std::uint64_t coarse_bytes() const { return coarse_bytes_; }  // of all rooms' coarsest levels, wherever they are
   std::uint32_t coarse_open() const {
     return coarse_open_;
@@ -65,7 +66,8 @@ class LevelBook {
   std::vector<std::uint32_t> first_;  // of each room in entries_, and the end
   std::vector<Entry> entries_;
   std::uint64_t held_bytes_ = 0, coarse_bytes_ = 0;
-  std::uint32_t loading_ = 0, coarse_open_ = 0;
+  std::vector<LevelKey> loading_;
+  std::uint32_t coarse_open_ = 0;
 };
 
 }  // namespace probewalk

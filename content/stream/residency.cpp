@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <tuple>
-#include <unordered_map>
 
 #include "content/error.h"
 #include "content/stream/level_choice.h"
@@ -89,14 +88,13 @@ std::vector<Residency::Candidate> Residency::candidates(const Walker& walker) {
   }
 
   std::vector<Candidate> order;
-  std::unordered_map<std::uint32_t, std::size_t> place;
+  std::ranges::stable_sort(all, {}, &Candidate::room);
   for (const Candidate& c : all) {
-    const auto [known, is_new] = place.try_emplace(c.room, order.size());
-    if (is_new) {
+    if (order.empty() || order.back().room != c.room) {
       order.push_back(c);
       continue;
     }
-    Candidate& merged = order[known->second];
+    Candidate& merged = order.back();
     merged.portals = std::min(merged.portals, c.portals);
     merged.arrival_s = std::min(merged.arrival_s, c.arrival_s);
     merged.share = std::max(merged.share, c.share);

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <numbers>
 #include <tuple>
-#include <unordered_set>
 
 namespace probewalk {
 
@@ -28,6 +27,7 @@ constexpr double kAllDirections = 4.0 * std::numbers::pi;
 constexpr double kInTheDoorway_m = 0.3;   // so near to a portal every direction may lead through it
 constexpr std::size_t kMostDoors = 1024;  // looked at from one point: a hall of many thousand costs no more than this
 constexpr double kLeastLength_m = 1e-9;
+const double kViewHalfCosine = std::cos(RoomGraph::kViewHalf_rad), kViewHalfSine = std::sin(RoomGraph::kViewHalf_rad);
 
 }  // namespace
 
@@ -78,7 +78,7 @@ std::vector<RoomGraph::Reach> RoomGraph::reach(std::uint32_t room, const glm::dv
   };
   std::vector<Reach> found{{room, 0, 0.0, 0.0}};
   std::vector<Way> ring{{found[0], point_m}}, next;
-  std::unordered_set<std::uint32_t> known{room};
+  std::vector<std::uint32_t> known{room};  // sorted
   for (std::uint32_t portals = 1; portals <= most_portals && !ring.empty(); ++portals) {
     next.clear();
     for (const Way& way : ring) {
@@ -99,14 +99,16 @@ std::vector<RoomGraph::Reach> RoomGraph::reach(std::uint32_t room, const glm::dv
     for (const Way& way : next) {
       if (!ring.empty() && ring.back().reach.room == way.reach.room) {
         ring.back().reach.arrival_s = std::min(ring.back().reach.arrival_s, way.reach.arrival_s);
-      } else if (!known.contains(way.reach.room)) {
+      } else if (!std::ranges::binary_search(known, way.reach.room)) {
         ring.push_back(way);
       }
     }
-    for (const Way& way : ring) {
+    const auto old = static_cast<std::ptrdiff_t>(known.size());
+    for (const Way& way : ring) {  // by room, as they were sorted
       found.push_back(way.reach);
-      known.insert(way.reach.room);
+      known.push_back(way.reach.room);
     }
+    std::inplace_merge(known.begin(), known.begin() + old, known.end());
   }
   std::sort(found.begin(), found.end(), [](const Reach& a, const Reach& b) {
     return std::tuple(a.portals, a.distance_m, a.room) < std::tuple(b.portals, b.distance_m, b.room);
@@ -114,50 +116,48 @@ std::vector<RoomGraph::Reach> RoomGraph::reach(std::uint32_t room, const glm::dv
   return found;
 }
 
+// Around a door; its share is not known yet, unless it is all around.
 RoomGraph::Cone RoomGraph::cone_of(const Door& door, const glm::dvec3& point_m) const {
   const std::span corners_m(corners_m_.data() + door.first_corner, door.corners);
-  Cone cone{glm::dvec3(0.0), std::numbers::pi, 0.5};
-  double nearest_m = glm::distance(point_m, door.middle_m), plane_m = nearest_m;
+  const Cone all{.share = 0.5};
+  double nearest_m = glm::distance(point_m, door.middle_m);
   glm::dvec3 sum(0.0);
   for (const glm::dvec3& corner : corners_m) {
     const double length_m = glm::distance(corner, point_m);
     nearest_m = std::min(nearest_m, length_m);
-    if (length_m < kInTheDoorway_m) return cone;
+    if (length_m < kInTheDoorway_m) return all;
     sum += (corner - point_m) / length_m;
   }
   const double length = glm::length(sum);
-  if (length < kLeastLength_m) return cone;
+  if (length < kLeastLength_m) return all;
   const glm::dvec3 axis = sum / length;
   double least_cosine = 1.0;
   for (const glm::dvec3& corner : corners_m) {
     least_cosine = std::min(least_cosine, glm::dot(axis, glm::normalize(corner - point_m)));
   }
   // Corners within less than a right angle of the axis: then all between them is, too.
-  if (least_cosine < 0.1) return cone;
+  if (least_cosine < 0.1) return all;
   const glm::dvec3 normal = glm::cross(corners_m[1] - corners_m[0], corners_m[2] - corners_m[0]);
-  if (glm::length(normal) > kLeastLength_m) {
-    plane_m = std::abs(glm::dot(glm::normalize(normal), point_m - corners_m[0]));
-    if (plane_m < kInTheDoorway_m && nearest_m < 1.0) return cone;
+  if (nearest_m < 1.0 && glm::length(normal) > kLeastLength_m) {
+    const double plane_m = std::abs(glm::dot(glm::normalize(normal), point_m - corners_m[0]));
+    if (plane_m < kInTheDoorway_m) return all;
   }
+  return {axis, least_cosine, std::sqrt(1.0 - least_cosine * least_cosine), 0.0};
+}
+
+double RoomGraph::share_of(const Door& door, const glm::dvec3& point_m) const {
+  const std::span corners_m(corners_m_.data() + door.first_corner, door.corners);
   double angle = 0.0;
   for (std::size_t k = 2; k < corners_m.size(); ++k) {
     angle += solid_angle(corners_m[0] - point_m, corners_m[k - 1] - point_m, corners_m[k] - point_m);
   }
-  return {axis, std::acos(std::min(1.0, least_cosine)), std::min(0.5, angle / kAllDirections)};
+  return std::min(0.5, angle / kAllDirections);
 }
 
-// What lies in both cones, at least; nothing where they do not meet.
-std::optional<RoomGraph::Cone> RoomGraph::meet(const Cone& outer, Cone through) {
-  if (outer.half_angle_rad < std::numbers::pi && through.half_angle_rad < std::numbers::pi) {
-    const double between_rad = std::acos(std::clamp(glm::dot(outer.axis, through.axis), -1.0, 1.0));
-    if (between_rad > outer.half_angle_rad + through.half_angle_rad) return std::nullopt;
-  }
-  through.share = std::min(through.share, outer.share);
-  if (outer.half_angle_rad < through.half_angle_rad) {
-    through.axis = outer.axis;
-    through.half_angle_rad = outer.half_angle_rad;
-  }
-  return through;
+bool RoomGraph::Cone::meets(const Cone& other) const {
+  const double sum_cosine = cosine * other.cosine - sine * other.sine;
+  const double sum_sine = sine * other.cosine + cosine * other.sine;
+  return sum_sine < 0.0 || glm::dot(axis, other.axis) >= sum_cosine;  // together half a turn or more: always
 }
 
 std::vector<RoomGraph::Seen> RoomGraph::seen(std::uint32_t room, const glm::dvec3& point_m,
@@ -168,7 +168,8 @@ std::vector<RoomGraph::Seen> RoomGraph::seen(std::uint32_t room, const glm::dvec
   };
   constexpr std::uint32_t kNone = ~std::uint32_t{0};
   std::vector<Seen> found{{room, 0, 0.0}};
-  std::vector<Look> looks{{room, 0, kNone, {glm::dvec3(0.0), std::numbers::pi, 1.0}}};
+  std::vector<Look> looks{{room, 0, kNone, {.share = 1.0}}};
+  const Cone view{look, kViewHalfCosine, kViewHalfSine, 0.0};
   std::size_t doors_left = kMostDoors;
   for (std::size_t k = 0; k < looks.size() && doors_left > 0; ++k) {
     const Look from = looks[k];
@@ -177,19 +178,27 @@ std::vector<RoomGraph::Seen> RoomGraph::seen(std::uint32_t room, const glm::dvec
       if (doors_left == 0) break;
       --doors_left;
       if (door.portal == from.through || door.to == room) continue;
-      const auto cone = meet(from.cone, cone_of(door, point_m));
-      if (!cone) continue;
-      const bool in_view = look == glm::dvec3(0.0) || cone->half_angle_rad >= std::numbers::pi ||
-                           std::acos(std::clamp(glm::dot(cone->axis, look), -1.0, 1.0)) <
-                               kViewHalf_rad + cone->half_angle_rad;
+      // What lies in the cone through the doors before and in that of this one: at least the smaller of the two.
+      Cone cone = cone_of(door, point_m);
+      if (!cone.is_all()) {
+        if (!from.cone.is_all() && !from.cone.meets(cone)) continue;
+        cone.share = share_of(door, point_m);
+      }
+      cone.share = std::min(cone.share, from.cone.share);
+      if (from.cone.cosine > cone.cosine) {
+        cone.axis = from.cone.axis;
+        cone.cosine = from.cone.cosine;
+        cone.sine = from.cone.sine;
+      }
+      const bool in_view = look == glm::dvec3(0.0) || cone.is_all() || view.meets(cone);
       const auto known = std::find_if(found.begin(), found.end(), [&](const Seen& s) { return s.room == door.to; });
       if (known == found.end()) {
-        found.push_back({door.to, from.portals + 1, cone->share, in_view});
+        found.push_back({door.to, from.portals + 1, cone.share, in_view});
       } else {
         known->in_view = known->in_view || in_view;
-        known->share = std::min(1.0, known->share + cone->share);
+        known->share = std::min(1.0, known->share + cone.share);
       }
-      looks.push_back({door.to, from.portals + 1, door.portal, *cone});
+      looks.push_back({door.to, from.portals + 1, door.portal, cone});
     }
   }
   double others = 0.0;

@@ -57,13 +57,17 @@ class RoomGraph {
     std::uint32_t first_corner = 0, corners = 0;
     std::uint32_t portal = 0;
   };
+  // Directions within an angle of an axis, or all of them. Angles are kept as cosine and sine: a frame asks for many.
   struct Cone {
     glm::dvec3 axis{0.0};
-    double half_angle_rad = 0.0;
-    double share = 0.0;
+    double cosine = -1.0, sine = 0.0;  // of the half angle; up to a right angle, or all around
+    double share = 0.0;                // of all directions
+    bool is_all() const { return cosine < 0.0; }
+    // Whether directions of both are less than the half angles apart. Of no use for all directions.
+    bool meets(const Cone& other) const;
   };
   Cone cone_of(const Door& door, const glm::dvec3& point_m) const;
-  static std::optional<Cone> meet(const Cone& outer, Cone through);
+  double share_of(const Door& door, const glm::dvec3& point_m) const;
   std::span<const Door> doors(std::uint32_t room) const {
     return {doors_.data() + first_door_[room], first_door_[room + 1] - first_door_[room]};
   }

@@ -61,13 +61,15 @@ void RoomStreamer::update(const Walker& walker) {
 
 // Since when each level that is not there has been wanted.
 void RoomStreamer::note_wants(std::int64_t now_ns) {
-  std::map<LevelKey, std::int64_t> since;
+  wanted_before_.swap(wanted_since_);
+  wanted_since_.clear();
   for (const LevelKey& key : decision_.wanted) {
     if (book_.status(key) == LevelStatus::kResident) continue;
-    const auto known = wanted_since_ns_.find(key);
-    since.emplace(key, known != wanted_since_ns_.end() ? known->second : now_ns);
+    const auto known = std::ranges::lower_bound(wanted_before_, key, {}, &Want::key);
+    const bool is_known = known != wanted_before_.end() && known->key == key;
+    wanted_since_.push_back({key, is_known ? known->since_ns : now_ns});
   }
-  wanted_since_ns_ = std::move(since);
+  std::ranges::sort(wanted_since_, {}, &Want::key);
 }
 
 void RoomStreamer::count_coarse() {
@@ -119,9 +121,10 @@ void RoomStreamer::arrive(LoadResult& result) {
     ++statistics_.rooms_loaded;
   }
   overcome(key);
-  if (const auto since = wanted_since_ns_.find(key); since != wanted_since_ns_.end()) {
-    statistics_.need_to_resident_ns.push_back(result.finished_ns - since->second);
-    wanted_since_ns_.erase(since);
+  const auto want = std::ranges::lower_bound(wanted_since_, key, {}, &Want::key);
+  if (want != wanted_since_.end() && want->key == key) {
+    statistics_.need_to_resident_ns.push_back(result.finished_ns - want->since_ns);
+    wanted_since_.erase(want);
   }
 }
 

@@ -88,6 +88,10 @@ class RoomStreamer {
   bool awaits_source() const;
   std::string describe_refused(const LoadResult& result) const;
 
+  struct Want {
+    LevelKey key;
+    std::int64_t since_ns = 0;
+  };
   struct Retired {
     std::uint64_t update = 0;  // number of the update that evicted it
     std::uint64_t bytes = 0;
@@ -109,7 +113,7 @@ class RoomStreamer {
   std::int64_t failure_told_ns_ = 0;  // that the source does not deliver; 0 = it does
   std::uint64_t coarse_run_ = 0;
   ResidencyDecision decision_;
-  std::map<LevelKey, std::int64_t> wanted_since_ns_;  // of what is wanted and not resident
+  std::vector<Want> wanted_since_, wanted_before_;  // what is wanted and not resident, by key; at the decision before
   std::deque<Retired> retired_;
   std::uint64_t retired_bytes_ = 0;
   std::vector<bool> room_seen_;

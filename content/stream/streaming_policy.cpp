@@ -1,21 +1,27 @@
 #include "content/stream/streaming_policy.h"
 
 #include <algorithm>
-#include <set>
 
 namespace probewalk {
 
 void ResidencyPlanner::touch(LevelKey key) {
-  const auto [place, is_new] = place_.try_emplace(key);
-  if (is_new) {
-    place->second = recency_.insert(recency_.end(), key);
+  ++turn_;
+  const auto place = std::ranges::lower_bound(wanted_, key, {}, &Wanted::key);
+  if (place != wanted_.end() && place->key == key) {
+    place->turn = turn_;
   } else {
-    recency_.splice(recency_.end(), recency_, place->second);
+    wanted_.insert(place, {key, turn_});
   }
+}
+
+const ResidencyPlanner::Wanted* ResidencyPlanner::find(LevelKey key) const {
+  const auto place = std::ranges::lower_bound(wanted_, key, {}, &Wanted::key);
+  return place != wanted_.end() && place->key == key ? &*place : nullptr;
 }
 
 void ResidencyPlanner::plan(ResidencyDecision& decision, const LevelBook& book, std::uint64_t retired_bytes,
                             bool keep_coarse) {
+  plan_turn_ = turn_;
   // The most urgent is touched last, so that of what is wanted no longer it goes last.
   for (auto key = decision.wanted.rbegin(); key != decision.wanted.rend(); ++key) {
     if (key->level > 0 || !keep_coarse) touch(*key);
@@ -29,12 +35,7 @@ void ResidencyPlanner::plan(ResidencyDecision& decision, const LevelBook& book, 
     if (status != LevelStatus::kResident) decision.settled = false;
     if (status != LevelStatus::kAbsent) continue;
     if (loading >= most_loads_) {
-      // Loads that nobody wants any more give way.
-      const std::set<LevelKey> wanted(decision.wanted.begin(), decision.wanted.end());
-      for (const LevelKey& other : recency_) {
-        if (wanted.contains(other)) break;  // wanted ones come last
-        if (book.status(other) == LevelStatus::kLoading) decision.cancellations.push_back(other);
-      }
+      cancel_unwanted(decision, book);
       break;
     }
     const bool fits = occupied <= budget_bytes_ && book.bytes(key) <= budget_bytes_ - occupied;
@@ -43,7 +44,7 @@ void ResidencyPlanner::plan(ResidencyDecision& decision, const LevelBook& book, 
       // frame reads them, so they count until the caller says they are gone.
       const std::uint64_t space = budget_bytes_ - std::min(budget_bytes_, occupied);
       const std::uint64_t short_of = book.bytes(key) - std::min(book.bytes(key), space);
-      if (short_of > retired_bytes) evict(decision, book, short_of - retired_bytes);
+      if (short_of > retired_bytes) evict(decision, book, short_of - retired_bytes, keep_coarse);
       break;
     }
     ++loading;
@@ -52,24 +53,37 @@ void ResidencyPlanner::plan(ResidencyDecision& decision, const LevelBook& book, 
   }
 }
 
-void ResidencyPlanner::evict(ResidencyDecision& decision, const LevelBook& book, std::uint64_t bytes) {
-  const std::set<LevelKey> wanted(decision.wanted.begin(), decision.wanted.end());
+// Loads that nobody wants any more give way to those that wait for their turn.
+void ResidencyPlanner::cancel_unwanted(ResidencyDecision& decision, const LevelBook& book) const {
+  std::vector<Wanted> unwanted;
+  for (const LevelKey& key : book.loading_keys()) {
+    const Wanted* known = find(key);
+    if (known != nullptr && known->turn <= plan_turn_) unwanted.push_back(*known);
+  }
+  std::ranges::sort(unwanted, {}, &Wanted::turn);
+  for (const Wanted& each : unwanted) decision.cancellations.push_back(each.key);
+}
+
+void ResidencyPlanner::evict(ResidencyDecision& decision, const LevelBook& book, std::uint64_t bytes,
+                             bool keep_coarse) {
+  std::erase_if(wanted_, [&](const Wanted& each) {
+    const LevelStatus status = book.status(each.key);
+    return each.turn <= plan_turn_ && (status == LevelStatus::kAbsent || status == LevelStatus::kFailed);
+  });
+  std::vector<Wanted> unwanted;
+  for (const Wanted& each : wanted_) {
+    if (each.turn <= plan_turn_ && (each.key.level > 0 || !keep_coarse)) unwanted.push_back(each);
+  }
+  std::ranges::sort(unwanted, {}, &Wanted::turn);
   std::uint64_t freed = 0;
-  for (auto at = recency_.begin(); at != recency_.end() && freed < bytes;) {
-    const LevelKey key = *at++;
-    if (wanted.contains(key)) break;  // so are all behind it
-    const LevelStatus status = book.status(key);
-    if (status == LevelStatus::kAbsent || status == LevelStatus::kFailed) {
-      recency_.erase(place_.at(key));
-      place_.erase(key);
+  for (const Wanted& each : unwanted) {
+    if (freed >= bytes) break;
+    if (book.status(each.key) == LevelStatus::kLoading) {
+      decision.cancellations.push_back(each.key);  // its space comes back when it has ended
       continue;
     }
-    if (status == LevelStatus::kLoading) {
-      decision.cancellations.push_back(key);  // its space comes back when it has ended
-      continue;
-    }
-    freed += book.bytes(key);
-    decision.evictions.push_back(key);
+    freed += book.bytes(each.key);
+    decision.evictions.push_back(each.key);
   }
 }
 

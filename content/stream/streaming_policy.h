@@ -4,8 +4,6 @@
 
 #include <cstdint>
 #include <glm/glm.hpp>
-#include <list>
-#include <map>
 #include <optional>
 #include <vector>
 
@@ -56,12 +54,20 @@ class ResidencyPlanner {
   void touch(LevelKey key);
 
  private:
-  void evict(ResidencyDecision& decision, const LevelBook& book, std::uint64_t bytes);
+  // Something that was wanted and may be held, and when it was wanted last: higher is later, no two are the same.
+  struct Wanted {
+    LevelKey key;
+    std::uint64_t turn = 0;
+  };
+  const Wanted* find(LevelKey key) const;
+  void cancel_unwanted(ResidencyDecision& decision, const LevelBook& book) const;
+  void evict(ResidencyDecision& decision, const LevelBook& book, std::uint64_t bytes, bool keep_coarse);
 
   std::uint64_t budget_bytes_;
   std::uint32_t most_loads_;
-  std::list<LevelKey> recency_;  // of all that was wanted and may be held, what was wanted longest ago first
-  std::map<LevelKey, std::list<LevelKey>::iterator> place_;
+  std::vector<Wanted> wanted_;  // by key: in one piece, as a frame finds the memory cold
+  std::uint64_t turn_ = 0;      // the last that was given
+  std::uint64_t plan_turn_ = 0; // the last before this plan
 };
 
 }  // namespace probewalk

@@ -21,6 +21,7 @@
 #include <openxr/openxr.h>
 #include <openxr/openxr_platform.h>
 
+#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
@@ -30,6 +31,7 @@
 #include <glm/glm.hpp>
 #include <glm/gtc/quaternion.hpp>
 #include <map>
+#include <new>
 #include <sstream>
 #include <string>
 #include <thread>
@@ -66,6 +68,7 @@ struct Layer {
   XrTime first_time = 0;
   XrTime jump_time = 0;
   std::uint64_t answers = 0;
+  std::atomic<int> swapchains = 0;  // that the application holds; made on any thread
   std::deque<XrEventDataReferenceSpaceChangePending> events;
 
   double number(const char* key, double otherwise = 0.0) const {
@@ -88,7 +91,8 @@ Function next(const char* name) {
 }
 
 void read_settings() {
-  layer = {};
+  layer.~Layer();
+  new (&layer) Layer;
   const char* text = std::getenv("PROBEWALK_TEST_LAYER");
   std::istringstream all(text != nullptr ? text : "");
   for (std::string entry; std::getline(all, entry, ';');) {
@@ -97,7 +101,7 @@ void read_settings() {
   }
   if (layer.settings.contains("log")) {
     layer.log.open(layer.settings["log"]);
-    layer.log << "frame,display_time,layers,stalled_ms,late_mm,late_deg,early_mm,early_deg\n";
+    layer.log << "frame,display_time,layers,stalled_ms,late_mm,late_deg,early_mm,early_deg,swapchains,quads\n";
   }
 }
 
@@ -217,6 +221,18 @@ XRAPI_ATTR XrResult XRAPI_CALL locate_views(XrSession session, const XrViewLocat
   return result;
 }
 
+XRAPI_ATTR XrResult XRAPI_CALL create_swapchain(XrSession session, const XrSwapchainCreateInfo* info,
+                                                XrSwapchain* swapchain) {
+  const XrResult result = next<PFN_xrCreateSwapchain>("xrCreateSwapchain")(session, info, swapchain);
+  if (XR_SUCCEEDED(result)) ++layer.swapchains;
+  return result;
+}
+
+XRAPI_ATTR XrResult XRAPI_CALL destroy_swapchain(XrSwapchain swapchain) {
+  --layer.swapchains;
+  return next<PFN_xrDestroySwapchain>("xrDestroySwapchain")(swapchain);
+}
+
 XRAPI_ATTR XrResult XRAPI_CALL wait_image(XrSwapchain swapchain, const XrSwapchainImageWaitInfo* info) {
   stall("xrWaitSwapchainImage");
   return next<PFN_xrWaitSwapchainImage>("xrWaitSwapchainImage")(swapchain, info);
@@ -237,7 +253,11 @@ XRAPI_ATTR XrResult XRAPI_CALL end_frame(XrSession session, const XrFrameEndInfo
     } else {
       layer.log << ",,,,";
     }
-    layer.log << std::endl;
+    int quads = 0;
+    for (std::uint32_t i = 0; i < info->layerCount; ++i) {
+      quads += info->layers[i]->type == XR_TYPE_COMPOSITION_LAYER_QUAD;
+    }
+    layer.log << ',' << layer.swapchains << ',' << quads << std::endl;
   }
   return result;
 }
@@ -257,6 +277,8 @@ XRAPI_ATTR XrResult XRAPI_CALL get_proc(XrInstance instance, const char* name, P
       {"xrWaitFrame", reinterpret_cast<PFN_xrVoidFunction>(wait_frame)},
       {"xrBeginFrame", reinterpret_cast<PFN_xrVoidFunction>(begin_frame)},
       {"xrLocateViews", reinterpret_cast<PFN_xrVoidFunction>(locate_views)},
+      {"xrCreateSwapchain", reinterpret_cast<PFN_xrVoidFunction>(create_swapchain)},
+      {"xrDestroySwapchain", reinterpret_cast<PFN_xrVoidFunction>(destroy_swapchain)},
       {"xrWaitSwapchainImage", reinterpret_cast<PFN_xrVoidFunction>(wait_image)},
       {"xrEndFrame", reinterpret_cast<PFN_xrVoidFunction>(end_frame)},
       {"xrPollEvent", reinterpret_cast<PFN_xrVoidFunction>(poll_event)},

@@ -9,12 +9,14 @@
 #include <ctime>
 #include <thread>
 
+#include "content/image/image.h"
 #include "content/probe/tracer_f32.h"
 #include "gpu_test.h"
 #include "probe_room.h"
 #include "render/readback.h"
 #include "render/view.h"
 #include "shaders/shared/display_transform.h"
+#include "shaders/shared/lookup_colors.h"
 #include "shaders/shared/view_depth.h"
 #include "shaders/shared/view_ray.h"
 
@@ -139,6 +141,52 @@ TEST_F(FrameRendererTest, ShowsRadianceThroughExposureCurveAndEncoding) {
     }
     EXPECT_LT(std::abs(sum / static_cast<double>(3 * radiance.rgb.size())), 0.02) << "the dither is fair";
   }
+}
+
+TEST(LookupColors, RunFromBlackByBlueGreenAndRedToWhite) {
+  EXPECT_EQ(lookup_color(0.0f), glm::vec3(0.0f));
+  EXPECT_EQ(lookup_color(kMostLookups), glm::vec3(1.0f));
+  EXPECT_EQ(lookup_color(1e6f), glm::vec3(1.0f));
+  const glm::vec3 few = lookup_color(12.8f), some = lookup_color(25.6f), many = lookup_color(51.2f);
+  EXPECT_TRUE(few.b > few.g && few.g > few.r) << "blue";
+  EXPECT_TRUE(some.g > some.b && some.b > some.r) << "green";
+  EXPECT_TRUE(many.r > 4.0f * many.g) << "red";
+  for (int n = 1; n <= 64; ++n) {
+    EXPECT_GT(glm::distance(lookup_color(static_cast<float>(n)), lookup_color(static_cast<float>(n - 1))), 0.004f) << n;
+  }
+}
+
+TEST_F(FrameRendererTest, ShowsEachPixelsLookUpsAsTheirColour) {
+  FrameRenderer renderer(device, store, options(2, false));
+  const Image image = make_target(2);
+  const auto views = views_at({0.3, 1.5, 0.9}, 2);
+  const auto picture = draw(renderer, image, views);
+  const std::uint32_t pipelines = device.pipelines_built();
+  renderer.show_lookups(true);
+  auto shown = draw(renderer, image, views);
+  for (int k = 0; k < 1000 && shown[0].rgb == picture[0].rgb; ++k) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    shown = draw(renderer, image, views);
+  }
+  ASSERT_NE(shown[0].rgb, picture[0].rgb) << "they never show";
+  EXPECT_GT(device.pipelines_built(), pipelines);
+  const auto aov = read_uints(device, renderer.tracer().aov());
+  write_png(std::string(PROBEWALK_TEST_OUTPUT_DIR) + "/lookups.png", shown[0]);
+  std::uint32_t least = ~0u, most = 0;
+  for (std::size_t view = 0; view < 2; ++view) {
+    for (std::size_t at = 0; at < aov[view].size(); ++at) {
+      least = std::min(least, aov[view][at].z);
+      most = std::max(most, aov[view][at].z);
+      const glm::vec3 expected = lookup_color(static_cast<float>(aov[view][at].z));
+      for (int c = 0; c < 3; ++c) {
+        ASSERT_NEAR(shown[view].rgb[3 * at + static_cast<std::size_t>(c)], 255.0f * srgb_encode(expected[c]), 1.01f);
+      }
+    }
+  }
+  EXPECT_LT(least + 4, most) << "the picture tells pixels apart";
+  renderer.show_lookups(false);
+  const auto again = draw(renderer, image, views);
+  for (std::size_t view = 0; view < 2; ++view) EXPECT_EQ(again[view].rgb, picture[view].rgb);
 }
 
 TEST_F(FrameRendererTest, FadesToBlack) {

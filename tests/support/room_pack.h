@@ -59,7 +59,8 @@ inline FloorMap room_floor() {
   return floor;
 }
 
-inline void write_room_pack(const std::filesystem::path& folder) {
+// `fine_n`: geometry of the finer level.
+inline void write_room_pack(const std::filesystem::path& folder, int fine_n = 64) {
   const Scene scene = furnished_room();
   const RayScene rays(scene);
   Manifest manifest;
@@ -93,7 +94,7 @@ inline void write_room_pack(const std::filesystem::path& folder) {
                                          manifest.grid.spacing_m * glm::dvec3(k & 1, k >> 1 & 1, k >> 2));
   }
   PackWriter writer(folder);
-  for (const int n : {16, 64}) {
+  for (const int n : {16, fine_n}) {
     RoomLevel level;
     LevelEntry entry;
     for (const glm::dvec3& position_m : manifest.probe_positions_m) {

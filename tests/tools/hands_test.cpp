@@ -13,6 +13,7 @@
 #include <thread>
 #include <vector>
 
+#include "content/image/image.h"
 #include "support/remote_hands.h"
 #include "support/room_pack.h"
 #include "tools/run_probewalk.h"
@@ -106,15 +107,15 @@ void await_frames(const fs::path& folder, int more) {
 class Play {
  public:
   Play(const fs::path& folder, RemoteHands& hands) : folder_(folder), hands_(hands) {}
-  void change(const std::function<void(RemoteState&)>& what) {
+  void change(const std::function<void(RemoteState&)>& what, int frames = 6) {
     what(hands_.state);
     hands_.send();
-    await_frames(folder_, 6);
+    await_frames(folder_, frames);
   }
   // For a moment; what it sets off (a teleport's blink) may take longer.
-  void hold(const std::function<void(RemoteState&)>& what) {
+  void hold(const std::function<void(RemoteState&)>& what, int frames = 6) {
     const RemoteState before = hands_.state;
-    change(what);
+    change(what, frames);
     change([&](RemoteState& state) { state = before; });
     await_frames(folder_, 4);
   }
@@ -176,6 +177,38 @@ std::string in_words(const std::vector<Step>& steps) {
   return text;
 }
 
+// In the saved pictures, which are small: what the room itself never shows.
+struct Shown {
+  int pictures = 0;
+  int aims = 0;      // of them show the marker's green
+  int narrowed = 0;  // have black corners around a lit middle
+};
+
+Shown shown_in(const fs::path& pictures) {
+  Shown shown;
+  for (const auto& entry : fs::directory_iterator(pictures)) {
+    const ImageRgb8 picture = read_png(entry.path());
+    const auto at = [&](int x, int y) {
+      return &picture.rgb[3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(picture.width_px) +
+                               static_cast<std::size_t>(x))];
+    };
+    int green = 0;
+    for (std::size_t i = 0; i < picture.rgb.size(); i += 3) {
+      const std::uint8_t* c = &picture.rgb[i];
+      green += std::abs(c[0] - 48) < 28 && std::abs(c[1] - 225) < 16 && std::abs(c[2] - 111) < 28;
+    }
+    const int right = picture.width_px - 1, foot = picture.height_px - 1;
+    const auto brightness = [](const std::uint8_t* c) { return c[0] + c[1] + c[2]; };
+    const bool narrowed =
+        brightness(at(0, 0)) + brightness(at(right, 0)) + brightness(at(0, foot)) + brightness(at(right, foot)) == 0 &&
+        brightness(at(right / 2, foot / 2)) > 100;
+    shown.aims += green >= 3;
+    shown.narrowed += narrowed;
+    ++shown.pictures;
+  }
+  return shown;
+}
+
 TEST(Hands, TeleportTurnMoveAndRecentreTheWearer) {
   if (!installed("monado-service")) GTEST_SKIP() << "monado-service is not installed";
   const fs::path folder = fresh_folder("hands-remote");
@@ -188,7 +221,7 @@ TEST(Hands, TeleportTurnMoveAndRecentreTheWearer) {
     play.hold([](RemoteState& state) { state.right.stick[0] = 1.0f; });
     play.hold([](RemoteState& state) { state.left.stick[1] = 1.0f; });
     play.change([](RemoteState& state) { state.head.position_m[2] = 0.5f; });
-    play.hold([](RemoteState& state) { state.left.b_click = 1; });
+    play.hold([](RemoteState& state) { state.left.b_click = 1; }, 2);
   });
   const std::vector<Step> stood = rests(walk);
   ASSERT_EQ(stood.size(), 7u) << in_words(stood) << read_text(folder / "stderr");
@@ -207,12 +240,45 @@ TEST(Hands, TeleportTurnMoveAndRecentreTheWearer) {
   const double s = std::numbers::sqrt2 / 4;  // half a metre backwards, as the rig now lies
   expect(5, stood[4].position_m + glm::dvec3(-s, 0, s), -45, 0.001);
   expect(6, stood[4].position_m, -45, 0.001);
+
+  const Shown shown = shown_in(folder / "pictures");
+  EXPECT_GT(shown.pictures, 2 * (shown.aims + shown.narrowed)) << "most of the time there is neither";
+  EXPECT_GE(shown.aims, 4) << "both eyes, while the trigger is held";
+  EXPECT_GE(shown.narrowed, 4) << "both eyes, while the stick moves the wearer";
+}
+
+TEST(Hands, HoldingMenuShowsAndHidesTheOverlay) {
+  if (!installed("monado-service")) GTEST_SKIP() << "monado-service is not installed";
+  const fs::path folder = fresh_folder("hands-overlay");
+  // Counts layers and swapchains at each xrEndFrame.
+  setenv("XR_API_LAYER_PATH", PROBEWALK_TEST_LAYER_MANIFESTS, 1);
+  setenv("XR_ENABLE_API_LAYERS", "XR_APILAYER_PROBEWALK_known_motion", 1);
+  setenv("PROBEWALK_TEST_LAYER", "log=layer.csv", 1);
+  walk_with_hands(folder, "--validate", [](Play& play) {
+    for (int k = 0; k < 2; ++k) {
+      play.hold([](RemoteState& state) { state.right.b_click = 1; }, 30);
+      play.change([](RemoteState&) {}, 20);
+    }
+  });
+  for (const char* name : {"XR_API_LAYER_PATH", "XR_ENABLE_API_LAYERS", "PROBEWALK_TEST_LAYER"}) unsetenv(name);
+  EXPECT_THAT(read_text(folder / "stderr"), Not(HasSubstr("VUID")));
+  std::ifstream log(folder / "layer.csv");
+  std::string line;
+  std::vector<std::string> seen;  // swapchains and quads, as they change
+  while (std::getline(log, line)) {
+    const std::string shown = line.substr(line.rfind(',', line.rfind(',') - 1) + 1);
+    if (seen.empty() || seen.back() != shown) seen.push_back(shown);
+  }
+  ASSERT_GE(seen.size(), 4u) << read_text(folder / "layer.csv");
+  EXPECT_EQ(seen[1], "2,0") << "colour and depth";
+  EXPECT_EQ(std::ranges::count(seen, "3,1"), 1) << "shown once, with a swapchain of its own";
+  EXPECT_EQ(seen.back(), "2,0") << "hidden, it is gone";
 }
 
 TEST(Hands, OfAScaledAndSeatedWearerFindEyesAndFloorWhereStated) {
   if (!installed("monado-service")) GTEST_SKIP() << "monado-service is not installed";
   std::vector<std::vector<Step>> stood;
-  for (const std::string options : {"", "--world-scale 2 --seated --eye-height 1.2"}) {
+  for (const std::string options : {"", "--world-scale 2 --seated"}) {
     const fs::path folder = fresh_folder("hands-scaled-" + std::to_string(stood.size()));
     stood.push_back(rests(walk_with_hands(folder, options, [](Play& play) {
       play.change([](RemoteState& state) { state.head.position_m[0] = 0.3f; });
@@ -220,7 +286,7 @@ TEST(Hands, OfAScaledAndSeatedWearerFindEyesAndFloorWhereStated) {
     ASSERT_EQ(stood.back().size(), 2u) << in_words(stood.back()) << read_text(folder / "stderr");
   }
   EXPECT_NEAR(stood[0][0].position_m.y, 1.6, 1e-4) << "the headset knows its floor";
-  EXPECT_NEAR(stood[1][0].position_m.y, 2 * 1.2, 1e-4);
+  EXPECT_NEAR(stood[1][0].position_m.y, 2 * 1.2, 1e-4) << "as one sits";
   EXPECT_GT(stood[0][0].ipd_m, 0.05);
   EXPECT_NEAR(stood[1][0].ipd_m, 2 * stood[0][0].ipd_m, 1e-5);
   EXPECT_NEAR(stood[0][1].position_m.x - stood[0][0].position_m.x, 0.3, 1e-4);

@@ -283,11 +283,14 @@ TEST_F(WebServer, ThatStandsStillForAWhileIsWaitedFor) {
   const pid_t child = start_probewalk(dir, command(dir, server_->url("/throttled/"), {}));
   const bool begun = has_kept_something(dir / "cache");
   server_->stand_still();
-  std::this_thread::sleep_for(std::chrono::milliseconds(1000));
+  std::this_thread::sleep_for(std::chrono::milliseconds(5000));
+  const std::string told = read_text(dir / "stderr");  // long before a request has failed
   server_->go_on();
   const Walked walked = outcome(dir, finish_probewalk(child, dir));
   ASSERT_TRUE(begun);
   expect_all_there(walked);
+  EXPECT_EQ(count(told, ": the server is silent; "), 1u) << told;
+  EXPECT_THAT(walked.run.err, HasSubstr(": the server delivers again"));
 }
 
 TEST_F(WebServer, ThatIsGoneForGoodLeavesTheWalkAsItIs) {

@@ -55,7 +55,7 @@ TEST(OpenXrBindings, AskOnlyForExtensionsThatAreInTheTable) {
 
 TEST(OpenXrBindings, AreToldInWords) {
   EXPECT_EQ(controls_in_words(interaction_profiles()[1]),
-            "trigger aims and teleports, left stick moves, right stick turns, left menu recentres");
+            "trigger aims and teleports, left stick moves, right stick turns, left menu recentres, held the overlay");
   for (const InteractionProfile& profile : interaction_profiles()) {
     EXPECT_THAT(controls_in_words(profile), HasSubstr("aims and teleports"));
     EXPECT_THAT(controls_in_words(profile), testing::Not(HasSubstr("/"))) << "a path is no word";

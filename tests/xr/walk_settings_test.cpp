@@ -25,6 +25,7 @@ fs::path fresh_file(const std::string& name) {
 WalkSettings all_said() {
   WalkSettings settings;
   settings.turn = "45";
+  settings.vignette = "high";
   settings.world_scale = 1.5;
   settings.seated = true;
   settings.eye_height_m = 1.2;
@@ -58,6 +59,7 @@ TEST(WalkSettings, ComeBackAsTheyWereWritten) {
 TEST(WalkSettings, OfABadFileSayWhichAndWhatIsWrong) {
   EXPECT_THAT(what_is_wrong_with("{\"turn\": \"50\"}"), HasSubstr("walk.json: \"turn\" is none of"));
   EXPECT_THAT(what_is_wrong_with("{\"turn\": 30}"), HasSubstr("\"turn\" is none of"));
+  EXPECT_THAT(what_is_wrong_with("{\"vignette\": \"dark\"}"), HasSubstr("\"vignette\" is none of"));
   EXPECT_THAT(what_is_wrong_with("{\"world_scale\": 0}"), HasSubstr("no number from 0.01 to 100"));
   EXPECT_THAT(what_is_wrong_with("{\"world_scale\": 1e999}"), HasSubstr("delete it for the defaults"));
   EXPECT_THAT(what_is_wrong_with("{\"eye_height_m\": \"low\"}"), HasSubstr("eye_height_m"));
@@ -76,15 +78,16 @@ TEST(WalkSettings, GoOverEachOtherOneByOne) {
   EXPECT_EQ(both.turn, "smooth");
   EXPECT_EQ(both.world_scale, 1.5);
   EXPECT_EQ(over(WalkSettings{}, all_said()), all_said());
-  EXPECT_EQ(in_words(both), "turn smooth, world scale 1.5, seated, eye height 1.2 m");
+  EXPECT_EQ(in_words(both), "turn smooth, vignette high, world scale 1.5, seated, eye height 1.2 m");
 
   DisplayOptions options;
   apply(all_said(), options);
   EXPECT_EQ(options.locomotion.turn, TurnStyle::kSnap);
   EXPECT_NEAR(options.locomotion.snap_rad, std::numbers::pi / 4, 1e-12);
   EXPECT_EQ(options.locomotion.world_scale, 1.5);
+  EXPECT_EQ(options.vignette, "high");
   EXPECT_TRUE(options.seated);
-  EXPECT_EQ(options.locomotion.eye_height_m, 1.2);
+  EXPECT_EQ(options.eye_height_m, 1.2);
   apply(both, options);
   EXPECT_EQ(options.locomotion.turn, TurnStyle::kSmooth);
 }

@@ -125,6 +125,10 @@ void run_walk(WalkArguments arguments, const CommonOptions& common) {
   if (arguments.mirror == ShownEyes::kSpectator && walk_options.display.choice == DisplayChoice::kWindow) {
     throw BadUsage("--mirror spectator shows others what a wearer sees; it is for headsets");
   }
+  const DisplayChoice display = walk_options.display.choice;
+  if (walk_options.headset_overlay && (display == DisplayChoice::kWindow || display == DisplayChoice::kOffscreen)) {
+    throw BadUsage("--headset-overlay is for headsets; --overlay shows it in a window");
+  }
   if (arguments.mirror == ShownEyes::kNone && walk_options.display.choice == DisplayChoice::kWindow) {
     throw BadUsage("--mirror off leaves a window nothing to show; it is for headsets");
   }
@@ -167,13 +171,18 @@ void run_walk(WalkArguments arguments, const CommonOptions& common) {
 void add_walk_command(CLI::App& app, CommonOptions& common) {
   CLI::App* command = app.add_subcommand("walk", "Walk through a pack in a headset, a window or offscreen");
   command->footer(
-      "Headset: walk as you are. Hold select (trigger, pinch) to aim, let go to teleport where the throw lands.\n"
-      "Left stick: 1.4 m/s where you look; right stick turns; menu goes back to where you stood last, on free floor.\n"
+      "Headset: walk as you are. Hold select (trigger, pinch) to aim: an arc, green with a ring where you may land, "
+      "red\n"
+      "with a cross where not; let go and you are there.\n"
+      "Left stick: 1.4 m/s where you look; right stick turns; menu goes back to where you stood last, on free floor;\n"
+      "held for a second it shows or hides the overlay.\n"
       "A window beside it shows what the wearer sees. When the runtime goes away, the walk goes on in a window or "
       "offscreen,\n"
       "and in the headset once it is there again.\n"
-      "Window: drag to look, WASD to walk, shift to run, Q and E or the arrows to turn, R back to free floor, click on\n"
-      "the floor to go there, F1 for the overlay, F2 for look-ups instead of the picture (in a headset too), F12 for a\n"
+      "Window: drag to look, WASD to walk, shift to run, Q and E or the arrows to turn, R back to free floor, click "
+      "on\n"
+      "the floor to go there (held, the ring shows where), F1 for the overlay, F2 for look-ups instead of the picture "
+      "(in a headset too), F12 for a\n"
       "picture, Esc to leave.\n"
       "Offscreen: plays the pack's tour once over its frames, on a fixed clock; with --realtime (and no --frames) the\n"
       "tour at a walker's pace on the real clock, until it or --seconds are over.\n\n"
@@ -226,9 +235,10 @@ void add_walk_command(CLI::App& app, CommonOptions& common) {
   command->add_option("--cache-limit", arguments->cache_mib, "MiB that they may take there (default: 8192)")
       ->check(CLI::Range(1ull, 1ull << 24));
   command->add_option("--report", arguments->report, "Write frames.csv, summary.json, trace.json and index.html here");
-  command->add_option("--ledger-cost", arguments->ledger_cost_pairs,
-                      "First measure, offscreen, what the ledger itself costs: this many times 16 frames with it and 16\n"
-                      "without (20 is a start); the report states it")
+  command
+      ->add_option("--ledger-cost", arguments->ledger_cost_pairs,
+                   "First measure, offscreen, what the ledger itself costs: this many times 16 frames with it and 16\n"
+                   "without (20 is a start); the report states it")
       ->check(CLI::Range(4ull, 10000ull))
       ->option_text("PAIRS");
   const std::map<std::string, ShownEyes> eyes{{"both", ShownEyes::kBoth},
@@ -246,6 +256,11 @@ void add_walk_command(CLI::App& app, CommonOptions& common) {
           ->option_text("NAME");
   command->add_flag("--overlay", walk_options.overlay,
                     "Show the overlay from the start (F1): frame times against the budget, rooms, streaming");
+  command->add_flag("--lookups", walk_options.lookups,
+                    "Show how many look-ups each pixel took instead of the picture, from the start (F2)");
+  command->add_flag("--headset-overlay", walk_options.headset_overlay,
+                    "Show the overlay to the wearer from the start, as a panel beside where they look (menu held for a "
+                    "second)");
   CLI::Option* settle = command->add_flag("--settle", arguments->settle,
                                           "Wait for the rooms that each pose wants (default: offscreen only)");
   command->add_flag("--realtime", arguments->realtime, "Never wait for rooms: show what is there, when a display would")

@@ -17,6 +17,12 @@ void add_walking_options(CLI::App& command, const std::shared_ptr<WalkingOptions
       ->check(CLI::IsMember(turn_names()))
       ->option_text("NAME");
   command
+      .add_option("--vignette", given.vignette,
+                  "Narrows the view while sticks or keys move or turn it smoothly: off, low, medium, high (default: "
+                  "medium in a headset, off in a window)")
+      ->check(CLI::IsMember(vignette_names()))
+      ->option_text("NAME");
+  command
       .add_option("--world-scale", given.world_scale,
                   "Metres of the scene to one of yours: 2 makes you twice as large and the scene half its size "
                   "(default: 1). Eye height, steps, speed and the distance of the eyes scale")
@@ -28,14 +34,14 @@ void add_walking_options(CLI::App& command, const std::shared_ptr<WalkingOptions
   command
       .add_option("--eye-height", given.eye_height_m,
                   fmt::format("Metres from the floor to resting eyes, in a window, seated, or where a headset knows no "
-                              "floor (default: {}, as one stands; one sits at about 1.2)",
-                              kEyeHeight_m))
+                              "floor (default: {}; with --seated {} in a headset)",
+                              kEyeHeight_m, kSeatedEyeHeight_m))
       ->check(CLI::Range(kEyeHeightMin_m, kEyeHeightMax_m))
       ->option_text("M");
   command.add_flag("--through-walls", options->through_walls,
                    "Walls do not stop sticks and keys; teleports still land in view only");
   command.add_flag("--remember", options->remember,
-                   "Keep turn, world scale, seat and eye height of this walk for the next ones, in "
+                   "Keep turn, vignette, world scale, seat and eye height of this walk for the next ones, in "
                    "walk.json in the user's configuration (delete it to forget). Options given then go over it");
 }
 

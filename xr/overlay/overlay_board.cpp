@@ -23,15 +23,15 @@ OverlayRow row_of(const char* name, const Histogram& histogram) {
 
 }  // namespace
 
-void OverlayBoard::show(bool shown) {
-  shown_ = shown;
-  if (shown) return;
+void OverlayBoard::show(bool shown, OverlayPlace place) {
+  shown_[static_cast<std::size_t>(place)] = shown;
+  if (is_shown()) return;
   const std::scoped_lock lock(mutex_);
   books_.reset();
 }
 
 void OverlayBoard::note(const Ledger& ledger, OverlayStatus status) {
-  if (!shown_) return;
+  if (!is_shown()) return;
   // A drawing thread that reads just now has the frame before; the next note brings both up to date.
   const std::unique_lock lock(mutex_, std::try_to_lock);
   if (!lock.owns_lock()) return;

@@ -2,6 +2,7 @@
 // nothing is noted while the overlay is hidden.
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <cstdint>
 #include <mutex>
@@ -50,14 +51,20 @@ struct OverlayFacts {
   std::vector<OverlayRow> rows;
 };
 
+enum class OverlayPlace {
+  kWindow,   // or a headset's mirror
+  kHeadset,  // before the wearer
+};
+
 class OverlayBoard {
  public:
   static constexpr std::size_t kFrames = 240;  // of the graph
   static constexpr std::size_t kFramesAtOnce = 512;
 
-  bool is_shown() const { return shown_; }
-  void show(bool shown);
-  void toggle() { show(!shown_); }
+  bool is_shown(OverlayPlace place) const { return shown_[static_cast<std::size_t>(place)]; }
+  bool is_shown() const { return is_shown(OverlayPlace::kWindow) || is_shown(OverlayPlace::kHeadset); }
+  void show(bool shown, OverlayPlace place = OverlayPlace::kWindow);
+  void toggle(OverlayPlace place) { show(!is_shown(place), place); }
 
   // Once a frame, on the frame thread, which never waits for the one that draws. Takes in the ledger's frames since the
   // last call, at most kFramesAtOnce of them, so that showing the overlay late in a long walk costs no frame. Nothing
@@ -79,8 +86,8 @@ class OverlayBoard {
   };
   void take(const Ledger& ledger, std::size_t index);
 
-  std::atomic<bool> shown_ = false;
-  mutable std::mutex mutex_;  // of books_; held for microseconds
+  std::array<std::atomic<bool>, 2> shown_{};  // by OverlayPlace
+  mutable std::mutex mutex_;                  // of books_; held for microseconds
   std::optional<Books> books_;
 };
 

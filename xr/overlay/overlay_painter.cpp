@@ -5,7 +5,7 @@
 namespace probewalk {
 
 bool OverlayPainter::prepare(VkFormat format) {
-  const bool shown = board_ != nullptr && board_->is_shown();
+  const bool shown = board_ != nullptr && board_->is_shown(OverlayPlace::kWindow);
   if (making_.valid() && making_.wait_for(std::chrono::seconds(0)) == std::future_status::ready) {
     drawing_ = making_.get();
   }

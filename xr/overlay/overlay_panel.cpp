@@ -5,15 +5,23 @@
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
+
+#include "shaders/shared/display_transform.h"
+#include "shaders/shared/lookup_colors.h"
 
 namespace probewalk {
 namespace {
 
 static_assert(sizeof(ImDrawVert) == sizeof(OverlayVertex) && sizeof(ImDrawIdx) == 2);
 
+// Dear ImGui has one current context, whatever the thread.
+std::mutex imgui_mutex;
+
 constexpr float kMargin_px = 8.0f;
 constexpr float kPanel_px = 392.0f;
 constexpr float kGraph_px = 96.0f;
+constexpr int kScaleSteps = 20;  // a multiple of the colours' own
 constexpr double kMiB = 1 << 20;
 
 constexpr ImU32 kGood = IM_COL32(92, 190, 126, 255);
@@ -112,6 +120,33 @@ void show_percentiles(const OverlayFacts& facts) {
   ImGui::EndTable();
 }
 
+// What the colours of the look-ups picture mean.
+void show_lookup_scale() {
+  text("look-ups of a pixel");
+  const float width = ImGui::GetContentRegionAvail().x, line = ImGui::GetTextLineHeight();
+  const ImVec2 corner = ImGui::GetCursorScreenPos();
+  ImGui::Dummy({width, line});
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const auto color_at = [](int k) {
+    const glm::vec3 linear = lookup_color(kMostLookups * static_cast<float>(k) / kScaleSteps);
+    return ImGui::ColorConvertFloat4ToU32({srgb_encode(linear.r), srgb_encode(linear.g), srgb_encode(linear.b), 1.0f});
+  };
+  for (int k = 0; k < kScaleSteps; ++k) {
+    const float left = corner.x + width * static_cast<float>(k) / kScaleSteps;
+    const float right = corner.x + width * static_cast<float>(k + 1) / kScaleSteps;
+    list.AddRectFilledMultiColor({left, corner.y}, {right, corner.y + line}, color_at(k), color_at(k + 1),
+                                 color_at(k + 1), color_at(k));
+  }
+  constexpr int kMarks = 4;
+  for (int k = 0; k <= kMarks; ++k) {
+    const std::string mark = fmt::format("{:.0f}{}", kMostLookups * static_cast<float>(k) / kMarks, k == kMarks ? "+" : "");
+    const float share = static_cast<float>(k) / kMarks;
+    ImGui::SetCursorPosX(ImGui::GetStyle().WindowPadding.x + share * (width - ImGui::CalcTextSize(mark.c_str()).x));
+    text(mark);
+    if (k < kMarks) ImGui::SameLine();
+  }
+}
+
 std::string level_text(std::int32_t level) {
   return level < 0 ? std::string("none") : fmt::format("{}", level);
 }
@@ -151,7 +186,9 @@ void show_all(const OverlayFacts& facts) {
                    level_text(status.level_wanted)));
   show_streaming(status);
   ImGui::Separator();
-  text(fmt::format("F1 hides this, F2 {} look-ups", status.shows_lookups ? "hides" : "shows"));
+  if (status.shows_lookups) show_lookup_scale();
+  wrapped(fmt::format("F1 (in a headset: menu, held) hides this, F2 {} look-ups",
+                      status.shows_lookups ? "hides" : "shows"));
   if (!status.credits.empty()) wrapped(status.credits);
 }
 
@@ -205,7 +242,9 @@ OverlayPicture picture_of(const ImDrawData& data, VkExtent2D screen) {
 
 }  // namespace
 
-OverlayPanel::OverlayPanel() : context_(ImGui::CreateContext()) {
+OverlayPanel::OverlayPanel() {
+  const std::scoped_lock lock(imgui_mutex);
+  context_ = ImGui::CreateContext();
   ImGui::SetCurrentContext(context_);
   ImGuiIO& io = ImGui::GetIO();
   io.IniFilename = nullptr;
@@ -227,10 +266,12 @@ OverlayPanel::OverlayPanel() : context_(ImGui::CreateContext()) {
 }
 
 OverlayPanel::~OverlayPanel() {
+  const std::scoped_lock lock(imgui_mutex);
   ImGui::DestroyContext(context_);
 }
 
 OverlayPicture OverlayPanel::draw(const OverlayFacts& facts, VkExtent2D screen) {
+  const std::scoped_lock lock(imgui_mutex);
   ImGui::SetCurrentContext(context_);
   ImGui::GetIO().DisplaySize = {static_cast<float>(screen.width), static_cast<float>(screen.height)};
   ImGui::GetIO().DeltaTime = 1.0f / 60.0f;

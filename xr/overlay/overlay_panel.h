@@ -12,7 +12,7 @@ namespace probewalk {
 
 class OverlayPanel {
  public:
-  // Makes the letters, in some milliseconds. One panel at a time draws; it may change threads between two calls.
+  // Makes the letters, in some milliseconds. Any thread, also while other panels draw: they take turns.
   OverlayPanel();
   ~OverlayPanel();
   OverlayPanel(const OverlayPanel&) = delete;
@@ -24,7 +24,7 @@ class OverlayPanel {
   OverlayPicture draw(const OverlayFacts& facts, VkExtent2D screen);
 
  private:
-  ImGuiContext* context_;
+  ImGuiContext* context_ = nullptr;
   OverlayAtlas atlas_;
   bool is_measured_ = false;
 };
