@@ -1,6 +1,7 @@
 #include "content/bake/emitter_light.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -11,6 +12,20 @@ namespace probewalk {
 namespace {
 
 constexpr float kFarAway_m = 1e6f;
+
+// A directional light is taken for the sun: half of 0.53 degrees, which makes its shadows as soft as they are far.
+constexpr float kSunRadius_rad = 0.004625f;
+// The disc in sixteen equal areas, an outer ring and an inner one; the first four are spread round the rim, so that
+// where they agree the rest would too.
+constexpr int kDiscSamples = 16;
+constexpr int kDiscScouts = 4;
+glm::vec2 disc_sample(int k) {
+  constexpr std::array<int, 8> kRound{0, 4, 2, 6, 1, 5, 3, 7};
+  const bool outer = k < kDiscSamples / 2;
+  const float turn = float(kRound[std::size_t(k % 8)]) + (outer ? 0.0f : 0.5f);
+  const float radius = std::sqrt(outer ? 0.75f : 0.25f), angle = 0.25f * std::numbers::pi_v<float> * turn;
+  return radius * glm::vec2(std::cos(angle), std::sin(angle));
+}
 
 // KHR_lights_punctual: the window that ends a light at its range.
 float range_window(const Light& light, float distance_m) {
@@ -60,6 +75,19 @@ bool reaches(const RayScene& rays, glm::vec3 origin, glm::vec3 target, float sto
   return far_m <= 0.0f || !rays.occluded(origin, offset / distance_m, 0.0f, far_m);
 }
 
+float visible_sun(const RayScene& rays, glm::vec3 origin, glm::vec3 to_light, std::uint64_t& rays_cast) {
+  glm::vec3 tangent, bitangent;
+  tangent_frame(to_light, tangent, bitangent);
+  int seen = 0;
+  for (int k = 0; k < kDiscSamples; ++k) {
+    if (k == kDiscScouts && seen % kDiscScouts == 0) return seen > 0 ? 1.0f : 0.0f;
+    const glm::vec2 offset = kSunRadius_rad * disc_sample(k);
+    ++rays_cast;
+    seen += !rays.occluded(origin, to_light + tangent * offset.x + bitangent * offset.y, 0.0f, kFarAway_m);
+  }
+  return static_cast<float>(seen) / kDiscSamples;
+}
+
 }  // namespace
 
 glm::vec3 EmitterLight::unshadowed(std::uint32_t emitter, const Receiver& receiver) const {
@@ -95,10 +123,10 @@ float EmitterLight::visible_fraction(std::uint32_t emitter, int ray_count, const
   const glm::vec3 origin = receiver.position_m + receiver.geometric_normal * ray_offset_m(receiver.position_m);
   if (!is_patch(emitter)) {
     const PunctualEmitter& punctual = emitters_.lights[emitter];
-    ++rays_cast;
     if (punctual.light.kind == Light::Kind::kDirectional) {
-      return rays_.occluded(origin, -punctual.light.direction, 0.0f, kFarAway_m) ? 0.0f : 1.0f;
+      return visible_sun(rays_, origin, -punctual.light.direction, rays_cast);
     }
+    ++rays_cast;
     return reaches(rays_, origin, punctual.light.position_m, punctual.lamp_radius_m) ? 1.0f : 0.0f;
   }
   const EmissivePatch& patch = emitters_.patches[emitter - emitters_.lights.size()];

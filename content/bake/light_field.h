@@ -1,4 +1,4 @@
-// Outgoing radiance at any surface point: one noise-free, view-independent function that the bake and the reference
+// Outgoing radiance at any surface point: one deterministic, view-independent function that the bake and the reference
 // pictures share, so that errors measured are errors of the probes. Direct light by next-event estimation over a fixed
 // low-discrepancy pattern (eight shadow rays, more only where more lights shine), indirect from irradiance cached on
 // the surfaces.

@@ -161,6 +161,43 @@ TEST(LightField, LampsOfTheNextRoomDoNotShineThroughTheWall) {
   }
 }
 
+// The sun's disc is 0.53 degrees wide: the edge of a shadow blurs with the way to what throws it, and is sharp at contact.
+TEST(LightField, TheSunsShadowsAreSharpAtContactAndSoftFarOff) {
+  Scene scene;
+  plain::add_material(scene, glm::vec3(0.5f));
+  plain::add_quad(scene, {-5, 0, -5}, {-5, 0, 5}, {5, 0, 5}, {5, 0, -5}, 0);
+  plain::add_quad(scene, {0, 0, 1}, {0, 4, 1}, {0, 4, 4}, {0, 0, 4}, 0);      // stands on the floor
+  plain::add_quad(scene, {-4, 4, -4}, {0, 4, -4}, {0, 4, -1}, {-4, 4, -1}, 0);  // hangs 4 m above it
+  Light sun;
+  sun.kind = Light::Kind::kDirectional;
+  sun.direction = glm::vec3(0, -1, 0);
+  sun.intensity = glm::vec3(1000.0f);
+  scene.lights.push_back(sun);
+  const RayScene rays(scene);
+  SilentProgress progress;
+  LightOptions options = quick();
+  options.bounces = 0;
+  const LightField light(scene, rays, options, progress);
+  const float lit = 0.5f * std::numbers::inv_pi_v<float> * 1000.0f;
+  const auto share = [&](float x, float z) { return light.along({x, 0.1f, z}, {0, -1, 0}, 1e-4f).r / lit; };
+  const float half_width_m = 4.0f * 0.004625f;
+  EXPECT_NEAR(share(1.1f * half_width_m, -2.0f), 1.0f, 1e-4f);
+  EXPECT_NEAR(share(-1.1f * half_width_m, -2.0f), 0.0f, 1e-4f);
+  // In between what a straight edge leaves of a disc.
+  for (const float at : {-0.6f, -0.3f, 0.0f, 0.3f, 0.6f}) {
+    const float left = 0.5f + (at * std::sqrt(1.0f - at * at) + std::asin(at)) * std::numbers::inv_pi_v<float>;
+    EXPECT_NEAR(share(at * half_width_m, -2.0f), left, 0.13f) << at;
+  }
+  EXPECT_NEAR(share(0.01f, 2.5f), share(-0.01f, 2.5f), 1e-4f) << "a wall along the light throws no shadow";
+  // A lower sun: right at the wall's foot its shadow begins.
+  Scene low = scene;
+  low.lights[0].direction = glm::normalize(glm::vec3(1, -1, 0));
+  const RayScene low_rays(low);
+  const LightField low_light(low, low_rays, options, progress);
+  EXPECT_EQ(low_light.along({0.01f, 0.1f, 2.5f}, {0, -1, 0}, 1e-4f).r, 0.0f);
+  EXPECT_GT(low_light.along({-0.01f, 0.1f, 2.5f}, {0, -1, 0}, 1e-4f).r, 0.6f * lit);
+}
+
 // A small glowing square over a plane: the patch's points must add up to the light that a Lambertian square sends down.
 TEST(LightField, LightsAPlaneByAPanel) {
   Scene scene;
