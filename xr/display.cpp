@@ -38,7 +38,8 @@ DeviceHooks with_window(DeviceHooks hooks, const DeviceHooks& window) {
 
 // Device, source and mirror for a runtime; without a window also where a desktop or a device cannot mirror.
 void open_mirrored(Display& display, const DisplayOptions& options, const FloorMap& floor, const Pose& start) {
-  const HeadsetOptions headset{options.eye_size, options.seated, options.locomotion};
+  const HeadsetOptions headset{options.eye_size, options.seated, options.locomotion, options.waits_ahead,
+                               options.refresh_hz};
   const ShownEyes shown = options.window_eyes.value_or(ShownEyes::kLeft);
   if (shown != ShownEyes::kNone) {
     try {

@@ -29,6 +29,8 @@ struct DisplayOptions {
   std::optional<ShownEyes> window_eyes;
   OverlayBoard* overlay = nullptr;  // of the window or the mirror; outlives every display
   bool seated = false;
+  bool waits_ahead = true;           // headset: for the next frame while one is drawn
+  std::optional<double> refresh_hz;  // headset; empty = as it is
   bool offscreen_in_real_time = false;  // at the pace of a display, not on a fixed clock
   LocomotionOptions locomotion;
   EyeGeometry eyes;  // window and offscreen, in the viewer's metres; a headset has its own
