@@ -48,7 +48,7 @@ DeviceHooks with_window(DeviceHooks hooks, const DeviceHooks& window) {
 void open_mirrored(Display& display, const DisplayOptions& options, const FloorMap& floor, const Pose& start) {
   const HeadsetOptions headset{options.eye_size, options.seated,
                                locomotion_of(options, "medium", options.seated ? kSeatedEyeHeight_m : kEyeHeight_m),
-                               options.overlay};
+                               options.overlay, options.waits_ahead, options.refresh_hz};
   const ShownEyes shown = options.window_eyes.value_or(ShownEyes::kLeft);
   if (shown != ShownEyes::kNone) {
     try {

@@ -43,7 +43,9 @@ struct ViewPose {
 
 // What became of a frame, where the source's methods do more than the runtime's calls that they are named after.
 struct FrameOutcome {
-  Interval wait, begin, end;         // enter and leave of the bare calls; CLOCK_MONOTONIC, 0 = not called
+  Interval wait;                     // in which the frame's thread stood and waited; CLOCK_MONOTONIC
+  Interval runtime_wait;             // enter and leave of the bare call, which may have been made ahead
+  Interval begin, end;               // of the bare calls, 0 = not called
   std::int64_t blocked_ns = 0;       // beside the calls: waiting for the device's queue
   bool shown = false;                // false: ended without layers
   bool pose_answer_follows = false;  // take_pose_errors() will have something to say of it

@@ -14,6 +14,8 @@ constexpr std::array kExtensions{
     OpenXrExtension{XR_KHR_COMPOSITION_LAYER_DEPTH_EXTENSION_NAME, false,
                     "frames are reprojected for turns of the head alone, not for its steps"},
     OpenXrExtension{XR_KHR_VISIBILITY_MASK_EXTENSION_NAME, false, "what the lenses hide is traced for nothing"},
+    OpenXrExtension{XR_FB_DISPLAY_REFRESH_RATE_EXTENSION_NAME, false,
+                    "the runtime's own settings decide the refresh rate"},
     OpenXrExtension{XR_EXT_HAND_INTERACTION_EXTENSION_NAME, false, "teleports need a controller, bare hands cannot"},
 };
 

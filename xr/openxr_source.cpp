@@ -67,14 +67,18 @@ OpenXrSource::OpenXrSource(const OpenXrInstance& instance, const Device& device,
       world_scale_(options.locomotion.world_scale),
       locomotion_(floor, options.locomotion),
       anchor_(start),
-      overlay_board_(options.overlay) {
+      overlay_board_(options.overlay),
+      waits_ahead_(options.waits_ahead) {
   create_session();
+  refresh_.emplace(instance, session_.get());
+  if (options.refresh_hz) refresh_->choose(*options.refresh_hz);
   create_space(options.seated, options.locomotion.eye_height_m);
   input_ = std::make_unique<OpenXrInput>(instance, session_.get());
   create_swapchains(options.eye_size);
   if (overlay_board_ != nullptr) {
     overlay_ = std::make_unique<OpenXrOverlay>(device, session_.get(), format_, *overlay_board_);
   }
+  waiter_ = std::make_unique<OpenXrWaiter>(session_.get());
 }
 
 void OpenXrSource::create_session() {
@@ -166,8 +170,9 @@ void OpenXrSource::create_swapchains(VkExtent2D wanted) {
 }
 
 std::string OpenXrSource::description() const {
-  return fmt::format("{}, {}x{} an eye, space {}, {}", instance_.description(), extent_.width, extent_.height,
-                     space_name_, depth_name(depth_format_));
+  const std::string refresh = refresh_->in_words();
+  return fmt::format("{}, {}x{} an eye, space {}, {}{}{}", instance_.description(), extent_.width, extent_.height,
+                     space_name_, depth_name(depth_format_), refresh.empty() ? "" : ", ", refresh);
 }
 
 bool OpenXrSource::alive(XrResult result, const char* call) {
@@ -192,6 +197,7 @@ void OpenXrSource::on_session_change(XrSessionState next) {
       break;
     }
     case SessionDuty::kEnd:
+      waiter_->forget();
       alive(xrEndSession(session_.get()), "xrEndSession");
       break;
     case SessionDuty::kNone:
@@ -223,6 +229,11 @@ SourceState OpenXrSource::poll() {
       case XR_TYPE_EVENT_DATA_VISIBILITY_MASK_CHANGED_KHR:
         masks_are_new_ = true;
         break;
+      case XR_TYPE_EVENT_DATA_DISPLAY_REFRESH_RATE_CHANGED_FB: {
+        const auto& change = reinterpret_cast<const XrEventDataDisplayRefreshRateChangedFB&>(event);
+        refresh_->changed_to(static_cast<double>(change.toDisplayRefreshRate));
+        break;
+      }
       case XR_TYPE_EVENT_DATA_INTERACTION_PROFILE_CHANGED:
         input_->note_controllers(session_.get());
         break;
@@ -236,12 +247,12 @@ SourceState OpenXrSource::poll() {
 FrameTiming OpenXrSource::wait() {
   FrameTiming timing;
   timing.should_render = false;
-  XrFrameWaitInfo info{XR_TYPE_FRAME_WAIT_INFO};
-  XrFrameState frame{XR_TYPE_FRAME_STATE};
   const XrTime last_display_time = std::exchange(frame_, {}).display_time;
-  XrResult result = XR_SUCCESS;
-  frame_.outcome.wait = timed([&] { result = xrWaitFrame(session_.get(), &info, &frame); });
-  if (!alive(result, "xrWaitFrame")) return timing;
+  WaitedFrame waited;
+  frame_.outcome.wait = timed([&] { waited = waiter_->take(); });
+  frame_.outcome.runtime_wait = waited.call;
+  if (!alive(waited.result, "xrWaitFrame")) return timing;
+  const XrFrameState& frame = waited.frame;
   timing.predicted_display_ns = instance_.monotonic_ns(frame.predictedDisplayTime);
   timing.period_ns = frame.predictedDisplayPeriod;
   timing.should_render = frame.shouldRender == XR_TRUE;
@@ -258,7 +269,9 @@ void OpenXrSource::begin(FrameTiming& timing) {
   const auto queue = lock_queue();
   XrResult result = XR_SUCCESS;
   frame_.outcome.begin = timed([&] { result = xrBeginFrame(session_.get(), &info); });
-  if (alive(result, "xrBeginFrame")) timing.discarded = result == XR_FRAME_DISCARDED;
+  if (!alive(result, "xrBeginFrame")) return;
+  timing.discarded = result == XR_FRAME_DISCARDED;
+  if (waits_ahead_) waiter_->ask();
 }
 
 std::unique_lock<std::mutex> OpenXrSource::lock_queue() {

@@ -14,7 +14,9 @@
 #include "xr/openxr_input.h"
 #include "xr/openxr_instance.h"
 #include "xr/openxr_overlay.h"
+#include "xr/openxr_refresh.h"
 #include "xr/openxr_swapchain.h"
+#include "xr/openxr_waiter.h"
 #include "xr/session_state.h"
 
 namespace probewalk {
@@ -24,6 +26,8 @@ struct HeadsetOptions {
   bool seated = false;        // the head's resting place is at the locomotion's eye height, wherever the floor is
   LocomotionOptions locomotion;
   OverlayBoard* overlay = nullptr;  // shown and hidden by a held menu button; outlives the source
+  bool waits_ahead = true;           // for the next frame as soon as one has begun, not once it has ended
+  std::optional<double> refresh_hz;  // to be asked for; empty = as it is
 };
 
 // Nothing but the wearer moves the view, by head, hands and sticks (locomotion.h); teleports blink. When runtime,
@@ -104,6 +108,8 @@ class OpenXrSource final : public FrameSource {
   Pose anchor_;  // where the head is put when the rig is placed: the start, later where it last was
   SessionState state_;
   XrOwned<XrSession, xrDestroySession> session_;
+  std::optional<OpenXrRefresh> refresh_;  // once there is a session
+  const bool waits_ahead_;
   std::unique_ptr<OpenXrInput> input_;
   XrOwned<XrSpace, xrDestroySpace> space_;
   RigFloor rig_floor_;  // in the session's space
@@ -129,6 +135,7 @@ class OpenXrSource final : public FrameSource {
   bool masks_are_new_ = true;
   bool rig_placed_ = false;
   std::deque<ShownPose> shown_;
+  std::unique_ptr<OpenXrWaiter> waiter_;  // last: it may still wait for a frame of the session
 };
 
 }  // namespace probewalk

@@ -120,7 +120,7 @@ bool WalkLeg::frame() {
   FrameRecord record;
   record.frame_id = books_.frame;
   FrameTiming timing;
-  record.wait = stamped([&] { timing = source_.wait(); });
+  record.wait = record.runtime_wait = stamped([&] { timing = source_.wait(); });
   if (timing.predicted_display_ns == 0) return true;  // lost while waiting: the next poll says so
   record.begin = stamped([&] { source_.begin(timing); });
   record.predicted_display = timing.predicted_display_ns;
@@ -152,6 +152,7 @@ void WalkLeg::book(FrameRecord& record, std::uint64_t drawn) {
   bool shown = drawn != 0;
   if (const auto outcome = source_.outcome()) {
     record.wait = outcome->wait;
+    record.runtime_wait = outcome->runtime_wait;
     record.begin = outcome->begin;
     record.end = outcome->end;
     record.blocked_ns += outcome->blocked_ns;

@@ -31,6 +31,7 @@
 #include <glm/glm.hpp>
 #include <glm/gtc/quaternion.hpp>
 #include <map>
+#include <mutex>
 #include <new>
 #include <sstream>
 #include <string>
@@ -64,7 +65,11 @@ struct Layer {
   PFN_xrGetInstanceProcAddr next_proc = nullptr;
   XrInstance instance = XR_NULL_HANDLE;
   XrSession session = XR_NULL_HANDLE;
-  Frame frame;
+  Frame frame;  // begun last
+  // Waited for and not begun yet: the next frame may be waited for on another thread while this one is drawn.
+  std::mutex waited_mutex;
+  Frame waited;
+  std::uint64_t waits = 0;
   XrTime first_time = 0;
   XrTime jump_time = 0;
   std::uint64_t answers = 0;
@@ -105,8 +110,7 @@ void read_settings() {
   }
 }
 
-void stall(const std::string& call) {
-  Frame& frame = layer.frame;
+void stall(const std::string& call, Frame& frame) {
   if (frame.stalled_ms > 0.0 || !layer.settings.contains("stall") || !layer.is_due("stall_every", frame.number)) return;
   std::vector<std::string> calls;
   std::istringstream all(layer.settings["stall"]);
@@ -162,13 +166,23 @@ void write_errors(const Head& head, const Head& truth) {
 }
 
 XRAPI_ATTR XrResult XRAPI_CALL wait_frame(XrSession session, const XrFrameWaitInfo* info, XrFrameState* state) {
-  layer.session = session;
   const XrResult result = next<PFN_xrWaitFrame>("xrWaitFrame")(session, info, state);
-  layer.frame = {.number = layer.frame.number + 1, .display_time = state->predictedDisplayTime, .early = {}};
-  stall("xrWaitFrame");
+  Frame waited{.number = ++layer.waits, .display_time = state->predictedDisplayTime, .early = {}};
+  stall("xrWaitFrame", waited);
+  const std::scoped_lock lock(layer.waited_mutex);
+  layer.waited = waited;
+  return result;
+}
+
+XRAPI_ATTR XrResult XRAPI_CALL begin_frame(XrSession session, const XrFrameBeginInfo* info) {
+  layer.session = session;
+  {
+    const std::scoped_lock lock(layer.waited_mutex);
+    layer.frame = layer.waited;
+  }
   if (layer.settings.contains("jump_at_frame") &&
       layer.frame.number == static_cast<std::uint64_t>(layer.number("jump_at_frame"))) {
-    layer.jump_time = state->predictedDisplayTime + kJumpAhead_ns;
+    layer.jump_time = layer.frame.display_time + kJumpAhead_ns;
     XrEventDataReferenceSpaceChangePending change{XR_TYPE_EVENT_DATA_REFERENCE_SPACE_CHANGE_PENDING,
                                                   nullptr,
                                                   session,
@@ -181,11 +195,7 @@ XRAPI_ATTR XrResult XRAPI_CALL wait_frame(XrSession session, const XrFrameWaitIn
     change.changeTime = layer.jump_time + kHour_ns;
     layer.events.push_back(change);
   }
-  return result;
-}
-
-XRAPI_ATTR XrResult XRAPI_CALL begin_frame(XrSession session, const XrFrameBeginInfo* info) {
-  stall("xrBeginFrame");
+  stall("xrBeginFrame", layer.frame);
   layer.frame.begun = true;
   return next<PFN_xrBeginFrame>("xrBeginFrame")(session, info);
 }
@@ -196,7 +206,7 @@ XRAPI_ATTR XrResult XRAPI_CALL locate_views(XrSession session, const XrViewLocat
   const bool in_frame = frame.begun && info->displayTime == frame.display_time;
   const int nth = in_frame ? ++frame.locates : 0;
   if (nth == 1) {
-    stall("xrLocateViews");
+    stall("xrLocateViews", frame);
     if (layer.is_due("time_invalid_every", frame.number)) return XR_ERROR_TIME_INVALID;
   }
   const XrResult result = next<PFN_xrLocateViews>("xrLocateViews")(session, info, state, capacity, count, views);
@@ -234,7 +244,7 @@ XRAPI_ATTR XrResult XRAPI_CALL destroy_swapchain(XrSwapchain swapchain) {
 }
 
 XRAPI_ATTR XrResult XRAPI_CALL wait_image(XrSwapchain swapchain, const XrSwapchainImageWaitInfo* info) {
-  stall("xrWaitSwapchainImage");
+  stall("xrWaitSwapchainImage", layer.frame);
   return next<PFN_xrWaitSwapchainImage>("xrWaitSwapchainImage")(swapchain, info);
 }
 
@@ -242,7 +252,7 @@ XRAPI_ATTR XrResult XRAPI_CALL end_frame(XrSession session, const XrFrameEndInfo
   Frame& frame = layer.frame;
   frame.begun = false;
   const XrResult result = next<PFN_xrEndFrame>("xrEndFrame")(session, info);
-  stall("xrEndFrame");  // after what the runtime itself waits for, which it would hide
+  stall("xrEndFrame", frame);  // after what the runtime itself waits for, which it would hide
   if (layer.log.is_open()) {
     layer.log << frame.number << ',' << info->displayTime << ',' << info->layerCount << ',' << frame.stalled_ms;
     if (info->layerCount > 0 && info->layers[0]->type == XR_TYPE_COMPOSITION_LAYER_PROJECTION) {

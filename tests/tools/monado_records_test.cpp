@@ -78,7 +78,7 @@ TEST(MonadoRecords, AgreeWithTheLedgerFrameByFrame) {
     // Stamps of both sides come from one clock; that of the device is brought onto it.
     if (frame.should_render) clock_error_ns = std::max(clock_error_ns, frame.clock_deviation_ns);
     const MonadoFrame& stamps = their->second;
-    woke.add(stamps.woke_ns, frame.wait, frame.clock_deviation_ns);
+    woke.add(stamps.woke_ns, frame.runtime_wait, frame.clock_deviation_ns);
     began.add(stamps.began_ns, frame.begin, frame.clock_deviation_ns);
     // Ended without layers, a frame is one that they discard.
     EXPECT_EQ(stamps.discarded, !frame.should_render);

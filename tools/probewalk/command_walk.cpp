@@ -41,6 +41,7 @@ struct WalkArguments {
   CLI::Option* mirror_option = nullptr;
   double ev = 0.0;
   CLI::Option* ev_option = nullptr;
+  double refresh_hz = 0.0;
 };
 
 // WxH of one eye.
@@ -137,6 +138,13 @@ void run_walk(WalkArguments arguments, const CommonOptions& common) {
   }
   if (!arguments.cache.empty()) walk_options.cache.folder = arguments.cache;
   if (arguments.cache_mib > 0) walk_options.cache.limit_bytes = arguments.cache_mib << 20;
+  if (arguments.refresh_hz > 0.0) {
+    if (walk_options.display.choice == DisplayChoice::kWindow ||
+        walk_options.display.choice == DisplayChoice::kOffscreen) {
+      throw BadUsage("--refresh-rate is a headset's; a window keeps its screen's");
+    }
+    walk_options.display.refresh_hz = arguments.refresh_hz;
+  }
   walk_options.command = own_command_line();
 
   walk_options.choice = chosen_tracer(arguments.method);
@@ -266,6 +274,13 @@ void add_walk_command(CLI::App& app, CommonOptions& common) {
   command->add_flag("--realtime", arguments->realtime, "Never wait for rooms: show what is there, when a display would")
       ->excludes(settle);
   add_walking_options(*command, arguments->walking);
+  command
+      ->add_option("--refresh-rate", arguments->refresh_hz,
+                   "Of the headset, in Hz: one of those that the walk lists at its start (default: as it is)")
+      ->check(CLI::Range(1.0, 1000.0))
+      ->option_text("HZ");
+  command->add_flag("!--no-wait-ahead", walk_options.display.waits_ahead,
+                    "In a headset, wait for a frame only once the one before has ended, not while it is drawn");
   arguments->ev_option = command->add_option("--ev", arguments->ev, "Exposure value, instead of the pack's")
                              ->check(CLI::Range(-32.0, 32.0));
   command->add_option("--save-frames", arguments->pictures, "Write the eyes' pictures here as PNG");

@@ -25,7 +25,11 @@ inline constexpr std::size_t kPoseAnswers = 5;
 
 struct FrameRecord {
   std::uint64_t frame_id = 0;
+  // Of the frame's thread, one after the other. In `wait` it stands until it can go on with the frame.
   Interval wait, begin, locate_early, record, locate_late, submit, end;
+  // The runtime's own call that `wait` waits for: made ahead on a thread of its own it begins, and may end, while the
+  // frame before is drawn. Else the same as `wait`.
+  Interval runtime_wait;
   // The ledger's own questions (device times, poses after the fact): after end.end, before the next wait.
   Interval ledger;
   // Of wait.end .. end.end: time spent blocked on a swapchain image, on the device or for its queue, wherever it falls.

@@ -61,6 +61,7 @@ std::vector<Column> make_columns() {
       {"gpu_resolve", &FrameRecord::gpu_resolve},
       {"mirror", &FrameRecord::mirror},
       {"ledger", &FrameRecord::ledger},
+      {"runtime_wait", &FrameRecord::runtime_wait},
   };
   for (const auto& [name, interval] : intervals) {
     columns.push_back(column(std::string(name) + "_begin", interval, &Interval::begin));

@@ -14,7 +14,9 @@ constexpr std::array<QuantityDefinition, 9> kDefinitions{{
      "wait_end to end_end, less the time blocked on a swapchain image, on the device or for its queue. The ledger's "
      "own "
      "questions come after it. Rendered frames only."},
-    {"cpu_wait", "ns", "Time inside the runtime's wait for the next frame."},
+    {"cpu_wait", "ns",
+     "Time that the frame thread stands in its wait for the frame (runtime_wait_begin and _end are those of the "
+     "runtime's call, which may be made ahead on a thread of its own)."},
     {"gpu_busy", "ns", "gpu_begin to gpu_end, from device time stamps. Rendered frames only."},
     {"gpu_trace", "ns", "The trace pass alone, from device time stamps."},
     {"prediction_horizon", "ns",

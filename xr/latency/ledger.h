@@ -28,7 +28,7 @@ struct LedgerOptions {
 // What is derived from one frame and the one before it. Empty = the display lacks it, or it was not measured.
 struct FrameQuantities {
   std::optional<std::int64_t> frame_ns;               // wait_end(n) - wait_end(n-1)
-  std::optional<std::int64_t> cpu_wait_ns;            // inside the runtime's wait
+  std::optional<std::int64_t> cpu_wait_ns;            // of the frame thread
   std::optional<std::int64_t> cpu_busy_ns;            // wait_end to end_end less time blocked; rendered frames only
   std::optional<std::int64_t> gpu_busy_ns;            // gpu_begin to gpu_end
   std::optional<std::int64_t> gpu_trace_ns;           // the trace pass

@@ -6,12 +6,13 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <utility>
 
 namespace probewalk {
 namespace {
 
 // Loader threads follow from kFirstLoader on.
-enum Track : unsigned { kCalls = 1, kDevice = 2, kMirror = 3, kFirstLoader = 10 };
+enum Track : unsigned { kCalls = 1, kDevice = 2, kMirror = 3, kWaiter = 4, kFirstLoader = 10 };
 
 std::string quoted(const std::string& text) {
   return nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
@@ -27,6 +28,7 @@ class TraceWriter {
     name("thread_name", kMirror, "mirror");
   }
 
+  void name_waiter() { name("thread_name", kWaiter, "wait ahead"); }
   void name_loader(unsigned thread) {
     name("thread_name", kFirstLoader + thread, fmt::format("loader {}", thread + 1).c_str());
   }
@@ -108,7 +110,7 @@ void add_load(TraceWriter& trace, const LevelLoad& load) {
 std::string trace_json(const Ledger& ledger, const StreamingFacts& streaming) {
   const auto& frames = ledger.frames();
   TraceWriter trace(first_ns(ledger, streaming));
-  bool device_placed = false;
+  bool device_placed = false, waits_ahead = false;
   std::int64_t device_end_ns = 0;
   for (std::size_t i = 0; i < frames.size(); ++i) {
     const FrameRecord& f = frames[i];
@@ -123,6 +125,10 @@ std::string trace_json(const Ledger& ledger, const StreamingFacts& streaming) {
                                                              {"ledger", f.ledger}};
     trace.span(kCalls, "frame", {f.wait.begin, f.end.end}, args);
     for (const auto& [name, interval] : calls) trace.span(kCalls, name, interval, args);
+    if (f.runtime_wait.begin < f.wait.begin) {
+      if (!std::exchange(waits_ahead, true)) trace.name_waiter();
+      trace.span(kWaiter, "runtime_wait", f.runtime_wait, args);
+    }
     if (f.clock_calibrated) {
       device_placed = true;
       trace.span(kDevice, "gpu", not_before(device_end_ns, f.gpu), args);
