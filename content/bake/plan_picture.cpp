@@ -20,9 +20,10 @@ constexpr std::array<Colour, 12> kRooms{{{244, 166, 160}, {168, 213, 162}, {159,
                                          {183, 200, 165}, {230, 180, 138}, {169, 185, 217}, {213, 227, 143}}};
 
 // Digits of 3 x 5 dots, rows from the top, three bits each.
-constexpr std::array<std::uint16_t, 10> kDigits{{0b111101101101111, 0b010110010010111, 0b111001111100111, 0b111001111001111,
-                                                 0b101101111001001, 0b111100111001111, 0b111100111101111, 0b111001001001001,
-                                                 0b111101111101111, 0b111101111001111}};
+constexpr std::array<std::uint16_t, 10> kDigits{{0b111101101101111, 0b010110010010111, 0b111001111100111,
+                                                 0b111001111001111, 0b101101111001001, 0b111100111001111,
+                                                 0b111100111101111, 0b111001001001001, 0b111101111101111,
+                                                 0b111101111001111}};
 
 // Heights at which much floor lies, at least a low ceiling's height apart.
 std::vector<double> find_storeys(const FloorMap& floor) {

@@ -105,8 +105,8 @@ json to_json(const Manifest& manifest) {
 // As a rooms file, whose boxes are in the scene file's own units.
 void print_rooms_file(const InfoOptions& options, const Manifest& manifest) {
   if (manifest.light && manifest.light->recentred) {
-    throw BadUsage(fmt::format("--rooms: {} was baked with --recentre, and its rooms are not where the scene's file has "
-                               "them; bake without it for a list to edit", options.pack));
+    throw BadUsage(fmt::format("--rooms: {} was baked with --recentre, and its rooms are not where the scene's file "
+                               "has them; bake without it for a list to edit", options.pack));
   }
   json rooms = json::array();
   for (const RoomEntry& room : manifest.rooms) {
@@ -206,9 +206,10 @@ void add_info_command(CLI::App& app, CommonOptions& common) {
   command->footer(
       "With --verify every byte is read and decoded; the exit code is 1 when a chunk is damaged, and each damaged chunk\n"
       "is named with its room and level. A manifest that cannot be read is exit code 3.\n\n"
-      "With --rooms the rooms come out as the file that `bake --rooms` reads (or finds as rooms.json beside the scene), for\n"
-      "corrections: give a room another name, put one box in the place of two, or two in the place of one. Boxes are in the\n"
-      "scene file's own units. Where they overlap the first one wins; what lies in none goes to the nearest.\n\n"
+      "With --rooms the rooms come out as the file that `bake --rooms` reads (or finds as rooms.json beside the\n"
+      "scene), for corrections: give a room another name, put one box in the place of two, or two in the place of one.\n"
+      "Boxes are in the scene file's own units. Where they overlap the first one wins; what lies in none goes to the\n"
+      "nearest.\n\n"
       "  probewalk info house.probes --verify\n"
       "  probewalk info house.probes --rooms > rooms.json");
   auto options = std::make_shared<InfoOptions>();
