@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <string>
 
 namespace probewalk {
 namespace {
@@ -12,10 +13,17 @@ using Colour = std::array<std::uint8_t, 3>;
 
 constexpr int kLargest_px = 2000;
 constexpr double kMargin_m = 0.5;
+constexpr double kLeastForNumbers_px_m = 20.0;  // numbers would lie over one another
 constexpr Colour kGround{232, 232, 232}, kPortal{208, 0, 0}, kTour{32, 64, 192}, kStart{0, 160, 0}, kProbe{0, 0, 0};
 constexpr std::array<Colour, 12> kRooms{{{244, 166, 160}, {168, 213, 162}, {159, 195, 238}, {242, 217, 141},
                                          {201, 177, 228}, {159, 220, 214}, {243, 185, 220}, {216, 207, 154},
                                          {183, 200, 165}, {230, 180, 138}, {169, 185, 217}, {213, 227, 143}}};
+
+// Digits of 3 x 5 dots, rows from the top, three bits each.
+constexpr std::array<std::uint16_t, 10> kDigits{{0b111101101101111, 0b010110010010111, 0b111001111100111,
+                                                 0b111001111001111, 0b101101111001001, 0b111100111001111,
+                                                 0b111100111101111, 0b111001001001001, 0b111101111101111,
+                                                 0b111101111001111}};
 
 // Heights at which much floor lies, at least a low ceiling's height apart.
 std::vector<double> find_storeys(const FloorMap& floor) {
@@ -83,6 +91,24 @@ class Plan {
       }
     }
   }
+  // To the right of a point, on a white ground, so that it reads over any room.
+  void number(glm::ivec2 at, std::size_t value) {
+    constexpr int kDot_px = 2;
+    const std::string text = std::to_string(value);
+    const glm::ivec2 corner = at + glm::ivec2(7, -5 * kDot_px / 2);
+    for (int y = -1; y <= 5 * kDot_px; ++y) {
+      for (int x = -1; x < 4 * kDot_px * int(text.size()); ++x) set(corner + glm::ivec2(x, y), {255, 255, 255});
+    }
+    for (int d = 0; d < int(text.size()); ++d) {
+      for (int dot = 0; dot < 15; ++dot) {
+        if (!(kDigits[std::size_t(text[std::size_t(d)] - '0')] >> (14 - dot) & 1)) continue;
+        for (int p = 0; p < kDot_px * kDot_px; ++p) {
+          const glm::ivec2 within(dot % 3 * kDot_px + p % kDot_px, dot / 3 * kDot_px + p / kDot_px);
+          set(corner + glm::ivec2(4 * kDot_px * d, 0) + within, kProbe);
+        }
+      }
+    }
+  }
   void line(glm::ivec2 a, glm::ivec2 b, Colour colour, int radius) {
     const int steps = std::max({1, std::abs(b.x - a.x), std::abs(b.y - a.y)});
     for (int i = 0; i <= steps; ++i) disc(a + (b - a) * i / steps, radius, colour);
@@ -119,10 +145,12 @@ class Plan {
       const glm::dvec2 ahead(-std::sin(space_.tour[i].yaw_rad), -std::cos(space_.tour[i].yaw_rad));
       line(pixel({b.x, b.z}, storey), pixel(glm::dvec2(b.x, b.z) + 0.2 * ahead, storey), kTour, 0);
     }
-    for (const ProbeSite& site : placement.sites) {
+    for (std::size_t k = 0; k < placement.sites.size(); ++k) {
+      const ProbeSite& site = placement.sites[k];
       const double floor_m = storeys_[storey_of(site.position_m.y - 0.3)];
       const glm::ivec2 at = pixel({site.position_m.x, site.position_m.z}, storey_of(site.position_m.y - 0.3));
       disc(at, 4, kProbe, site.position_m.y - floor_m < 1.25 ? 2 : -1);
+      if (px_per_m_ >= kLeastForNumbers_px_m) number(at, k);
     }
     const glm::dvec3 start = space_.start.position_m;
     disc(pixel({start.x, start.z}, storey_of(start.y - kEyeHeight_m)), 5, kStart);

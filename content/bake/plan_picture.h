@@ -7,8 +7,8 @@
 
 namespace probewalk {
 
-// Rooms in pastel, portals red, the tour blue from the green start, probes black (low ones hollow); x to the right,
-// z down. At most 2000 pixels a side; a plain grey picture for a space without floor.
+// Rooms in pastel, portals red, the tour blue from the green start, probes black (low ones hollow) with their numbers in
+// the pack, which are those of the sites, where there is room for them; x to the right, z down. At most 2000 pixels a side; a plain grey picture for a space without floor.
 ImageRgb8 draw_plan(const Space& space, const Placement& placement);
 
 }  // namespace probewalk

@@ -1,5 +1,6 @@
 // The space a walker can be in, found in any scene: floors, the reachable part, rooms, start pose and tour.
-// Algorithm and parameters: column spans, floor graph, parts, score, start, tour (design: rooms, steps 1-6, 12, 13).
+// Algorithm and parameters: column spans, floor graph, parts, score, rooms (the author's, else found where the way of
+// heads narrows), portals, start, tour (design: rooms).
 #pragma once
 
 #include <cstdint>
@@ -63,8 +64,8 @@ struct Space {
 };
 
 struct SpaceOptions {
-  double voxel_m = 0.05;               // raised where memory would not suffice
-  std::optional<glm::dvec3> start_m;   // --start: floor or eye position, moved to the nearest walkable floor
+  double voxel_m = 0.05;              // raised where memory would not suffice
+  std::optional<glm::dvec3> start_m;  // --start: floor or eye position, moved to the nearest walkable floor
 };
 
 Space find_space(const Scene& scene, const RayScene& rays, const SpaceOptions& options, Progress& progress);

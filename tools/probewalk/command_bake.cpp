@@ -104,6 +104,8 @@ void add_bake_command(CLI::App& app, CommonOptions& common) {
       "keeps what is finished beside the pack; the same command goes on from there. The same scene and options give the\n"
       "same bytes, whatever the number of threads. NAME.plan.png beside the pack shows floors, rooms,\n"
       "probes and the tour from above. README.md lists the glTF extensions that are read.\n\n"
+      "Rooms are those that the author named (node extras, or rooms.json beside the scene), else they are found: where the\n"
+      "way for heads narrows to a door's width, one room ends; halls of over 150 m^2 are cut.\n\n"
       "With --error E the pack is as small as keeps two numbers below E for eyes anywhere in walkable space: mean FLIP of\n"
       "what a display shows at 20 pixels a degree, and the share of rays that are wrong or holes. Both are measured on\n"
       "views that nothing was chosen by. Rooms get probes where they are needed and maps of their own sizes; a table and\n"
@@ -139,7 +141,8 @@ void add_bake_command(CLI::App& app, CommonOptions& common) {
                       "Bounces of indirect light that are followed; what would come after is extrapolated")
       ->check(CLI::Range(0, 64))->capture_default_str();
   command->add_option("--seed", bake.light.seed, "Turns the sampling patterns of indirect light")->capture_default_str();
-  command->add_option("--rooms", arguments->rooms_file, "Room names and boxes, instead of rooms.json beside the scene");
+  command->add_option("--rooms", arguments->rooms_file, "Room names and boxes, instead of rooms.json beside the scene; `probewalk info PACK --rooms` prints those "
+                      "that were found, to correct them");
   command->add_option("--scale", arguments->scale, "Metres per unit of the file, instead of the guess that is stated")
       ->check(CLI::PositiveNumber);
   command->add_flag("--recentre", bake.load.recentre, "Move the scene's middle to x = z = 0 and its lowest point to y = 0");

@@ -18,6 +18,7 @@ using nlohmann::json;
 struct InfoOptions {
   std::string pack;
   bool verify = false;
+  bool rooms = false;
 };
 
 double tour_length_m(const Manifest& manifest) {
@@ -101,6 +102,22 @@ json to_json(const Manifest& manifest) {
           {"bytes_device", manifest.bytes_device()}};
 }
 
+// As a rooms file, whose boxes are in the scene file's own units.
+void print_rooms_file(const InfoOptions& options, const Manifest& manifest) {
+  if (manifest.light && manifest.light->recentred) {
+    throw BadUsage(fmt::format("--rooms: {} was baked with --recentre, and its rooms are not where the scene's file "
+                               "has them; bake without it for a list to edit", options.pack));
+  }
+  json rooms = json::array();
+  for (const RoomEntry& room : manifest.rooms) {
+    rooms.push_back({{"id", room.id},
+                     {"name", room.name},
+                     {"min", to_json(room.bounds.lower_m / manifest.scale)},
+                     {"max", to_json(room.bounds.upper_m / manifest.scale)}});
+  }
+  fmt::print("{}\n", json{{"rooms", rooms}}.dump(2, ' ', false, json::error_handler_t::replace));
+}
+
 // ---- text
 
 std::string size_text(std::uint64_t bytes) {
@@ -163,6 +180,7 @@ void print(const Pack& pack) {
 
 void run_info(const InfoOptions& options, const CommonOptions& common) {
   const Pack pack = Pack::open(options.pack);
+  if (options.rooms) return print_rooms_file(options, pack.manifest());
   std::vector<std::string> damage;
   if (options.verify) damage = pack.verify(*make_progress(common));
   if (common.json) {
@@ -188,10 +206,17 @@ void add_info_command(CLI::App& app, CommonOptions& common) {
   command->footer(
       "With --verify every byte is read and decoded; the exit code is 1 when a chunk is damaged, and each damaged chunk\n"
       "is named with its room and level. A manifest that cannot be read is exit code 3.\n\n"
-      "  probewalk info house.probes --verify");
+      "With --rooms the rooms come out as the file that `bake --rooms` reads (or finds as rooms.json beside the\n"
+      "scene), for corrections: give a room another name, put one box in the place of two, or two in the place of one.\n"
+      "Boxes are in the scene file's own units. Where they overlap the first one wins; what lies in none goes to the\n"
+      "nearest.\n\n"
+      "  probewalk info house.probes --verify\n"
+      "  probewalk info house.probes --rooms > rooms.json");
   auto options = std::make_shared<InfoOptions>();
   command->add_option("pack", options->pack, "The pack (a folder NAME.probes)")->required();
   command->add_flag("--verify", options->verify, "Read, check and decode every byte");
+  command->add_flag("--rooms", options->rooms, "Print the rooms as a rooms file to edit for `bake --rooms`, and nothing else")
+      ->excludes("--verify");
   add_common_options(*command, common);
   command->callback([options, &common] { run_info(*options, common); });
 }

@@ -8,7 +8,9 @@
 #include "content/scene/space.h"
 #include "content/scene/space/column_spans.h"
 #include "content/scene/space/floor_graph.h"
+#include "content/scene/space/head_map.h"
 #include "content/scene/space/parts.h"
+#include "content/scene/space/room_search.h"
 #include "content/scene/space/rooms_assignment.h"
 #include "content/scene/space/start_and_tour.h"
 
@@ -17,7 +19,8 @@ namespace {
 
 constexpr std::size_t kMostPlaces = 1'500'000;
 constexpr float kTallestHeadroom_m = 20.0f;
-constexpr double kFurnitureDepth_m = 1.25;  // how far a head can lean over what stands along the floor's edge
+constexpr double kLargePart_m2 = 3.0;
+constexpr double kWall_m = 0.1;  // a room's box reaches this far past the columns that its walls leave free
 
 // Walls and floors of a building that stands upright make y the axis with most area across it.
 void check_up_axis(const Scene& scene, std::vector<std::string>& warnings) {
@@ -39,25 +42,32 @@ void check_up_axis(const Scene& scene, std::vector<std::string>& warnings) {
   }
 }
 
-FloorGraph find_floors(const Scene& scene, double voxel_m, Progress& progress, std::vector<std::string>& warnings) {
+struct Floors {
+  ColumnSpans spans;
+  FloorGraph graph;
+};
+
+Floors find_floors(const Scene& scene, double voxel_m, Progress& progress, std::vector<std::string>& warnings) {
   for (;;) {
     if (progress.cancelled()) throw Interrupted("interrupted while looking for floors");
     const GroundPlan plan = plan_ground(scene, voxel_m);
-    FloorGraph graph = build_floor_graph(build_column_spans(scene, plan));
+    ColumnSpans spans = build_column_spans(scene, plan);
+    FloorGraph graph = build_floor_graph(spans);
     if (graph.places.size() > kMostPlaces) {
       voxel_m = 1.1 * plan.cell_m * std::sqrt(double(graph.places.size()) / kMostPlaces);
       continue;
     }
     if (plan.cropped) {
-      warnings.push_back(fmt::format("the scene is too wide to look for floors everywhere: only x {:.0f} to {:.0f}, "
-                                     "z {:.0f} to {:.0f} m, where most of its triangles are, is walkable",
-                                     plan.lower_m.x, plan.upper_m.x, plan.lower_m.y, plan.upper_m.y));
+      warnings.push_back(
+          fmt::format("the scene is too wide to look for floors everywhere: only x {:.0f} to {:.0f}, "
+                      "z {:.0f} to {:.0f} m, where most of its triangles are, is walkable",
+                      plan.lower_m.x, plan.upper_m.x, plan.lower_m.y, plan.upper_m.y));
     }
     if (plan.cell_m > 2.0 * kWidestCell_m) {
       warnings.push_back(
           fmt::format("floors are looked for in columns of {:.2f} m to bound memory: doors are missed", plan.cell_m));
     }
-    return graph;
+    return {std::move(spans), std::move(graph)};
   }
 }
 
@@ -66,28 +76,54 @@ void grow(Bounds& bounds, glm::dvec3 point) {
   bounds.upper_m = glm::max(bounds.upper_m, point);
 }
 
-// The air over the floor and over the furniture along its edges, inside the scene.
-Bounds air_bounds(const FloorGraph& graph, const std::vector<std::int32_t>& room, const Bounds& scene) {
-  Bounds air;
-  for (std::size_t i = 0; i < graph.places.size(); ++i) {
-    if (room[i] < 0) continue;
-    const glm::dvec3 foot = graph.foot_m(std::int32_t(i));
-    const double headroom = std::min(kTallestHeadroom_m, graph.places[i].ceiling_m - graph.places[i].floor_m);
-    grow(air, foot - glm::dvec3(kFurnitureDepth_m, 0.0, kFurnitureDepth_m));
-    grow(air, foot + glm::dvec3(kFurnitureDepth_m, headroom, kFurnitureDepth_m));
+// The air over each room's part of the head map, inside the scene.
+void fill_air_bounds(const HeadMap& heads, const std::vector<std::int32_t>& room, const Bounds& scene,
+                     std::vector<RoomRegion>& rooms) {
+  const double reach_m = 0.5 * heads.graph.cell_m + kWall_m;
+  for (std::size_t i = 0; i < heads.graph.places.size(); ++i) {
+    const StandingPlace& place = heads.graph.places[i];
+    const glm::dvec3 foot = heads.graph.foot_m(std::int32_t(i));
+    const double headroom = std::min(kTallestHeadroom_m, place.ceiling_m - place.floor_m);
+    Bounds& air = rooms[room[i]].bounds;
+    grow(air, foot - glm::dvec3(reach_m, 0.0, reach_m));
+    grow(air, foot + glm::dvec3(reach_m, headroom, reach_m));
   }
-  for (int k = 0; k < 3; k += 2) {
-    air.lower_m[k] = std::max(air.lower_m[k], scene.lower_m[k]);
-    air.upper_m[k] = std::min(air.upper_m[k], scene.upper_m[k]);
+  for (RoomRegion& region : rooms) {
+    for (int k = 0; k < 3; k += 2) {
+      region.bounds.lower_m[k] = std::max(region.bounds.lower_m[k], scene.lower_m[k]);
+      region.bounds.upper_m[k] = std::min(region.bounds.upper_m[k], scene.upper_m[k]);
+    }
   }
-  return air;
+}
+
+HeadMap head_map_of(const Floors& floors, const std::vector<FloorPart>& parts, const std::vector<std::size_t>& kept) {
+  std::vector<bool> is_kept(floors.graph.places.size(), false), is_other(floors.graph.places.size(), false);
+  for (const FloorPart& part : parts) {
+    if (part.area_m2 < kLargePart_m2) continue;
+    for (const std::int32_t i : part.places) is_other[i] = true;
+  }
+  for (const std::size_t id : kept) {
+    for (const std::int32_t i : parts[id].places) {
+      is_kept[i] = true;
+      is_other[i] = false;
+    }
+  }
+  return build_head_map(floors.graph, floors.spans, is_kept, is_other);
+}
+
+// Those of a scene whose author named none.
+std::vector<RoomRegion> name_rooms(std::int32_t count) {
+  std::vector<RoomRegion> rooms;
+  for (std::int32_t r = 1; r <= count; ++r)
+    rooms.push_back({fmt::format("room-{}", r), fmt::format("Room {}", r), Bounds{}});
+  return rooms;
 }
 
 void fill_floor_map(const FloorGraph& graph, const std::vector<std::int32_t>& room, FloorMap& map) {
   map.origin_m = graph.origin_m;
   map.cell_m = graph.cell_m;
   map.columns = graph.columns;
-  for (std::size_t i = 0; i < graph.places.size(); ++i) {
+  for (std::size_t i = 0; i < room.size(); ++i) {
     if (room[i] < 0) continue;
     const StandingPlace& p = graph.places[i];
     map.nodes.push_back(
@@ -121,24 +157,36 @@ Space find_space(const Scene& scene, const RayScene& rays, const SpaceOptions& o
   check_up_axis(scene, space.warnings);
   space.rooms = list_rooms(scene);
 
-  const FloorGraph graph = find_floors(scene, options.voxel_m, progress, space.warnings);
+  const Floors floors = find_floors(scene, options.voxel_m, progress, space.warnings);
+  const FloorGraph& graph = floors.graph;
   progress.advance(1);
   std::vector<FloorPart> parts = find_parts(graph);
   score_parts(scene, rays, graph, parts, progress);
   const std::vector<std::size_t> kept = choose_parts(scene, rays, graph, parts, start_m);
   progress.advance(1);
 
-  std::vector<std::int32_t> room(graph.places.size(), -1);
-  for (const std::size_t id : kept) {
-    for (const std::int32_t i : parts[id].places) room[i] = room_at(space.rooms, graph.foot_m(i));
-  }
-  fill_floor_map(graph, room, space.floor);
   if (kept.empty()) {
+    fill_floor_map(graph, {}, space.floor);
     fill_floorless(scene, rays, options, space);
     return space;
   }
-  if (scene.rooms.empty()) space.rooms.front().bounds = air_bounds(graph, room, scene.bounds);
-  space.portals = find_portals(graph, room);
+  const HeadMap heads = head_map_of(floors, parts, kept);
+  FoundRooms found;
+  if (scene.rooms.empty()) {
+    found = search_rooms(heads);
+    if (found.count > 1) space.rooms = name_rooms(found.count);
+    fill_air_bounds(heads, found.room, scene.bounds, space.rooms);
+  } else {
+    for (std::size_t i = 0; i < heads.graph.places.size(); ++i) {
+      found.room.push_back(room_at(space.rooms, heads.graph.foot_m(std::int32_t(i))));
+    }
+  }
+  std::vector<std::int32_t> room(graph.places.size(), -1);
+  for (std::size_t i = 0; i < heads.floor_place.size(); ++i) {
+    if (heads.floor_place[i] >= 0) room[heads.floor_place[i]] = found.room[i];
+  }
+  fill_floor_map(graph, room, space.floor);
+  space.portals = find_portals(heads.graph, found.room);
   progress.advance(1);
 
   const WalkGround ground{graph, parts[kept.front()].places, room};

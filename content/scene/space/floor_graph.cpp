@@ -11,20 +11,26 @@ namespace {
 
 constexpr float kOpenSky_m = 1000.0f;
 
-void link_neighbours(FloorGraph& graph, const std::vector<std::int32_t>& first) {
+}  // namespace
+
+void link_places(FloorGraph& graph, const LinkRule& rule) {
   std::vector<StandingPlace>& places = graph.places;
+  // Places are sorted: those of a column follow each other.
+  std::vector<std::int32_t> first(std::size_t(graph.columns.x) * graph.columns.y + 1, 0);
+  for (const StandingPlace& p : places) ++first[std::size_t(p.iz) * graph.columns.x + p.ix + 1];
+  for (std::size_t c = 1; c < first.size(); ++c) first[c] += first[c - 1];
   for (StandingPlace& a : places) {
     for (int k = 0; k < 4; ++k) {
       const int x = a.ix + kLinkX[k];
       const int z = a.iz + kLinkZ[k];
       if (x < 0 || z < 0 || x >= graph.columns.x || z >= graph.columns.y) continue;
       const std::size_t column = std::size_t(z) * graph.columns.x + x;
-      float nearest = float(kStep_m);
+      float nearest = rule.step_m;
       for (std::int32_t j = first[column]; j < first[column + 1]; ++j) {
         const StandingPlace& b = places[j];
         const float rise = std::abs(b.floor_m - a.floor_m);
         const float common = std::min(a.ceiling_m, b.ceiling_m) - std::max(a.floor_m, b.floor_m);
-        if (rise > nearest || (rise == nearest && a.link[k] >= 0) || common < float(kHeadroom_m)) continue;
+        if (rise > nearest || (rise == nearest && a.link[k] >= 0) || common < rule.headroom_m) continue;
         nearest = rise;
         a.link[k] = j;
       }
@@ -89,8 +95,6 @@ void measure_walls(FloorGraph& graph) {
   }
 }
 
-}  // namespace
-
 glm::dvec3 FloorGraph::foot_m(std::int32_t place) const {
   const StandingPlace& p = places[place];
   return {origin_m.x + (p.ix + 0.5) * cell_m, p.floor_m, origin_m.y + (p.iz + 0.5) * cell_m};
@@ -114,11 +118,8 @@ FloorGraph build_floor_graph(const ColumnSpans& spans) {
   graph.origin_m = spans.origin_m;
   graph.cell_m = spans.cell_m;
   graph.columns = spans.columns;
-  std::vector<std::int32_t> first;
-  first.reserve(spans.first.size());
   for (int iz = 0; iz < spans.columns.y; ++iz) {
     for (int ix = 0; ix < spans.columns.x; ++ix) {
-      first.push_back(std::int32_t(graph.places.size()));
       const auto column = spans.column(ix, iz);
       for (std::size_t s = 0; s < column.size(); ++s) {
         const float floor = column[s].upper_m;
@@ -128,8 +129,7 @@ FloorGraph build_floor_graph(const ColumnSpans& spans) {
       }
     }
   }
-  first.push_back(std::int32_t(graph.places.size()));
-  link_neighbours(graph, first);
+  link_places(graph, {float(kStep_m), float(kHeadroom_m)});
   measure_walls(graph);
   return graph;
 }

@@ -38,6 +38,15 @@ struct FloorGraph {
   std::int32_t diagonal(std::int32_t place, int k) const;
 };
 
+// What links places of neighbouring columns: heights that differ by at most this, and this much free above both.
+struct LinkRule {
+  float step_m, headroom_m;
+};
+
+// Fill the links (each place's nearest in height, where the choice is mutual) and the distances to walls.
+void link_places(FloorGraph& graph, const LinkRule& rule);
+void measure_walls(FloorGraph& graph);
+
 FloorGraph build_floor_graph(const ColumnSpans& spans);
 
 }  // namespace probewalk

@@ -1,4 +1,4 @@
-// Which room each place of the floor belongs to, and the openings between rooms.
+// The author's rooms, and the openings between rooms.
 #pragma once
 
 #include <vector>
@@ -15,8 +15,8 @@ std::vector<RoomRegion> list_rooms(const Scene& scene);
 // Index of the first room whose bounds hold the air a metre above the foot, else of the nearest one.
 int room_at(const std::vector<RoomRegion>& rooms, glm::dvec3 foot_m);
 
-// Openings of at least 0.4 m where one can walk from one room to another. `room` of each place of the graph, -1 = not
-// part of the space. Each is an upright rectangle from the floor to the lowest ceiling along it, at most 4 m high.
+// Openings of at least 0.4 m where a head can pass from one room to another. `room` of each place of the graph, -1 =
+// not part of the space. Each is an upright rectangle from the floor to the lowest ceiling along it, at most 4 m high.
 std::vector<Portal> find_portals(const FloorGraph& graph, const std::vector<std::int32_t>& room);
 
 }  // namespace probewalk
