@@ -42,6 +42,7 @@ json to_json(const LevelEntry& level) {
           {"bytes_disk", level.bytes_disk},
           {"bytes_device", level.bytes_device},
           {"error", level.error < 0.0 ? json(nullptr) : json(level.error)},
+          {"samples", level.quantised ? "quantised" : "float"},
           {"chunk", level.chunk}};
 }
 
@@ -131,8 +132,8 @@ void print_room(const Manifest& manifest, std::size_t index) {
              list_text(neighbours, "no other room"));
   for (std::size_t k = 0; k < room.levels.size(); ++k) {
     const LevelEntry& level = room.levels[k];
-    fmt::print("    level {}  geometry {}\u00b2, radiance {}\u00b2, {} on disk, {} on the device, error {}\n", k,
-               level.geometry_size, level.radiance_size, size_text(level.bytes_disk), size_text(level.bytes_device),
+    fmt::print("    level {}  geometry {}\u00b2{}, radiance {}\u00b2, {} on disk, {} on the device, error {}\n", k,
+               level.geometry_size, level.quantised ? " (quantised)" : "", level.radiance_size, size_text(level.bytes_disk), size_text(level.bytes_device),
                level.error < 0.0 ? "not measured" : fmt::format("{:.3g}", level.error));
   }
 }
