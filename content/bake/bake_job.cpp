@@ -16,6 +16,7 @@
 #include "content/bake/plan/plan_report.h"
 #include "content/bake/plan_picture.h"
 #include "content/bake/probe_lattice.h"
+#include "content/bake/quantised_level.h"
 #include "content/error.h"
 #include "content/pack/pack_format.h"
 #include "content/pack/pack_io.h"
@@ -92,7 +93,7 @@ std::string hash_options(const BakeOptions& options, const Scene& scene) {
   const std::string planned = target.asked() ? fmt::format(" error {:a} budget {} most {} {} {}", target.error,
                                                            target.budget_bytes, target.most_probes, target.most_geometry,
                                                            target.most_radiance) : "";
-  const std::string all = text + planned;
+  const std::string all = text + planned + fmt::format(" samples {}", static_cast<int>(options.samples));
   return content_hash(std::as_bytes(std::span(all)));
 }
 
@@ -187,6 +188,7 @@ class BakeJob {
     const HeadSpace heads(scene_, rays_, space_);
     PlanTarget target = options_.target;
     target.coarse_side = options_.coarse_resolution;
+    target.samples = options_.samples;
     report_.planned = plan_bake(space_, heads, rays_, light, exposure, maps, target, progress_);
     const Plan& planned = *report_.planned;
     Placement placement;
@@ -358,10 +360,34 @@ class BakeJob {
       done_texels_ += texels;
       progress_.advance(texels);
     }
-    const std::vector<std::byte> chunk = encode_chunk(level);
+    const std::vector<std::byte> chunk = encode_level(level, entry);
     entry.bytes_disk = chunk.size();
     entry.chunk = writer.add_chunk(chunk);
     return entry;
+  }
+
+  // Quantised where that is asked for, or is smaller and stays within its bounds: looked at in what a reader will see.
+  std::vector<std::byte> encode_level(const RoomLevel& level, LevelEntry& entry) {
+    SampleSizes sizes;
+    std::vector<std::byte> chunk = encode_chunk(level, options_.samples, &sizes);
+    const bool tried = sizes.bytes_quantised > 0 && (sizes.bytes_float == 0 || sizes.bytes_quantised < sizes.bytes_float);
+    if (tried) {
+      const QuantisedLevel found = compare_samples(level, decode_chunk(chunk, "the chunk just made"));
+      entry.quantised = options_.samples == SampleCoding::kQuantised || found.keeps_bounds();
+      if (entry.quantised) {
+        ++report_.quantised_levels;
+        report_.worst_sample_error = std::max(report_.worst_sample_error, found.worst);
+        planar_before_ += found.planar_before;
+        planar_after_ += found.planar_after;
+        add_feature(kQuantisedFeature);
+      } else {
+        chunk = encode_chunk(level);
+      }
+    }
+    report_.samples_bytes_float += sizes.bytes_float;
+    report_.samples_bytes_disk += entry.quantised ? sizes.bytes_quantised : sizes.bytes_float;
+    if (planar_before_ > 0) report_.planar_fraction = double(planar_after_) / double(planar_before_);
+    return chunk;
   }
 
   void stop_if_asked() const {
@@ -387,7 +413,7 @@ class BakeJob {
   std::vector<Pose> tour_;
   ImageRgb8 plan_;
   BakeReport report_;
-  std::uint64_t done_texels_ = 0, cut_cells_ = 0, all_cells_ = 0;
+  std::uint64_t done_texels_ = 0, cut_cells_ = 0, all_cells_ = 0, planar_before_ = 0, planar_after_ = 0;
   bool sees_sky_ = false;
 };
 

@@ -10,6 +10,7 @@
 #include "content/bake/light_field.h"
 #include "content/bake/placement.h"
 #include "content/bake/plan/planner.h"
+#include "content/pack/pack_io.h"
 #include "content/progress.h"
 #include "content/scene/scene.h"
 
@@ -25,6 +26,9 @@ struct BakeOptions {
   PlacementOptions placement;
   // When asked for, it chooses places and sizes instead of `placement` and the resolutions, which are its limits then.
   PlanTarget target;
+  // How geometry's samples are stored. kSmaller: quantised in the rooms and levels where that is smaller, keeps every
+  // sample within its error and walls planar; measured on what was stored.
+  SampleCoding samples = SampleCoding::kSmaller;
   LightOptions light;
   std::optional<glm::dvec3> start_m;
   // Work for several machines over one folder: share 0 of `shares` makes what all need, the light; shares 1 to `shares` bake
@@ -44,6 +48,10 @@ struct BakeReport {
   double seconds_per_million_texels = 0.0;
   std::uint64_t bytes_disk = 0;
   std::uint64_t bytes_device = 0;
+  std::size_t quantised_levels = 0;  // of rooms' levels that were baked now; of their samples:
+  std::uint64_t samples_bytes_disk = 0, samples_bytes_float = 0;  // ... as stored, and what floats would have taken
+  double worst_sample_error = 0.0;                                // ... relative to the float
+  double planar_fraction = 1.0;                                   // ... entries of the pyramid that stayed planar
   double connected_fraction = 0.0;  // of cells
   std::optional<Plan> planned;      // when a target was asked for
   std::filesystem::path plan_file;  // the same as JSON, beside the pack; empty without

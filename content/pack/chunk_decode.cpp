@@ -10,6 +10,7 @@
 #include "content/pack/chunk_layout.h"
 #include "content/pack/pack_io.h"
 #include "content/pack/sample_range.h"
+#include "content/pack/sample_tiles.h"
 #include "content/pack/section_transform.h"
 #include "content/pack/zstd_stream.h"
 
@@ -93,6 +94,17 @@ std::vector<float> read_samples(SectionReader& section, std::vector<std::byte>& 
   return w;
 }
 
+std::vector<float> read_quantised_samples(SectionReader& section, std::vector<std::byte>& scratch,
+                                          const ChunkCounts& counts, const std::string& source) {
+  scratch.resize(tiled_sample_bytes(counts.geometry_n));
+  section.read(scratch);
+  std::vector<float> w(vertex_count(counts));
+  if (!decode_tiled_samples(scratch, counts.geometry_n, w)) {
+    refuse(source, "a quantised sample is out of range or not of the format");
+  }
+  return w;
+}
+
 }  // namespace
 
 RoomLevel decode_chunk(std::span<const std::byte> bytes, const std::string& source) {
@@ -116,6 +128,7 @@ RoomLevel decode_chunk(std::span<const std::byte> bytes, const std::string& sour
           g.n = static_cast<int>(counts.geometry_n);
           r.r = static_cast<int>(counts.radiance_r);
           break;
+        case ChunkSection::kQuantisedSamples: g.w = read_quantised_samples(section, scratch, counts, source); break;
         case ChunkSection::kSamples: g.w = read_samples(section, scratch, counts, source); break;
         case ChunkSection::kEdges:
           g.edges_horizontal = read_edges(section, straight_edge_count(counts), source);

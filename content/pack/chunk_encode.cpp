@@ -10,6 +10,7 @@
 #include "content/pack/chunk_layout.h"
 #include "content/pack/pack_io.h"
 #include "content/pack/sample_range.h"
+#include "content/pack/sample_tiles.h"
 #include "content/pack/section_transform.h"
 #include "content/pack/zstd_stream.h"
 
@@ -84,6 +85,11 @@ void put_probe(ChunkSection kind, const ProbeMap& probe, const RoomLevel& level,
       split_byte_planes<std::uint16_t>(residuals_of<std::uint16_t>(probe.radiance.texel_w, side), out);
       break;
     }
+    case ChunkSection::kQuantisedSamples: {
+      const TiledSamples tiled = encode_tiled_samples(g.w, static_cast<std::size_t>(g.n));
+      std::memcpy(out.data(), tiled.bytes.data(), tiled.bytes.size());
+      break;
+    }
   }
 }
 
@@ -109,20 +115,35 @@ Section make_section(ChunkSection kind, const RoomLevel& level, const ChunkCount
 
 }  // namespace
 
-std::vector<std::byte> encode_chunk(const RoomLevel& level) {
+std::vector<std::byte> encode_chunk(const RoomLevel& level, SampleCoding samples, SampleSizes* sizes) {
   const ChunkCounts counts = counts_of(level);
-  bool cuts = false;
+  bool cuts = false, folded = true;
   for (std::size_t p = 0; p < level.probes.size(); ++p) {
     check_probe(level.probes[p], p, counts);
     cuts = cuts || has_cut(level.probes[p].geometry);
+    folded = folded && has_folded_border(level.probes[p].geometry.w, counts.geometry_n);
+    if (!folded && samples == SampleCoding::kQuantised) refuse(p, "its border is not folded onto itself");
   }
-  std::vector<ChunkSection> kinds{ChunkSection::kPositions, ChunkSection::kSamples, ChunkSection::kEdges};
+  if (!folded) samples = SampleCoding::kFloat;
+  std::vector<ChunkSection> kinds{ChunkSection::kPositions};
+  if (samples != SampleCoding::kQuantised) kinds.push_back(ChunkSection::kSamples);
+  kinds.push_back(ChunkSection::kEdges);
   if (cuts) kinds.push_back(ChunkSection::kNormals);
   kinds.insert(kinds.end(), {ChunkSection::kRadiance, ChunkSection::kTexelW});
+  if (samples != SampleCoding::kFloat) kinds.push_back(ChunkSection::kQuantisedSamples);
 
   std::vector<Section> sections(kinds.size());
   tbb::parallel_for(std::size_t{0}, kinds.size(),
                     [&](std::size_t s) { sections[s] = make_section(kinds[s], level, counts); });
+
+  for (const Section& section : sections) {
+    if (sizes && section.entry.kind == ChunkSection::kSamples) sizes->bytes_float = section.entry.stored_bytes;
+    if (sizes && section.entry.kind == ChunkSection::kQuantisedSamples) sizes->bytes_quantised = section.entry.stored_bytes;
+  }
+  if (samples == SampleCoding::kSmaller) {
+    const bool quantised = sections.back().entry.stored_bytes < sections[1].entry.stored_bytes;
+    sections.erase(quantised ? sections.begin() + 1 : sections.end() - 1);
+  }
 
   ChunkHeader header{counts, level.origin_m, {}};
   for (const Section& section : sections) header.sections.push_back(section.entry);

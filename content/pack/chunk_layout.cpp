@@ -2,11 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstring>
 
 #include "content/error.h"
+#include "content/pack/sample_tiles.h"
 
 namespace probewalk {
 
@@ -53,8 +55,14 @@ std::uint64_t section_bytes_per_probe(ChunkSection kind, const ChunkCounts& coun
     case ChunkSection::kNormals: return vertex_count(counts) * sizeof(std::uint16_t);
     case ChunkSection::kRadiance: return mip_texel_count(counts) * sizeof(std::uint32_t);
     case ChunkSection::kTexelW: return texel_count(counts) * sizeof(std::uint16_t);
+    case ChunkSection::kQuantisedSamples: return tiled_sample_bytes(counts.geometry_n);
   }
   return 0;
+}
+
+bool has_quantised_samples(const ChunkHeader& header) {
+  return std::any_of(header.sections.begin(), header.sections.end(),
+                     [](const SectionEntry& section) { return section.kind == ChunkSection::kQuantisedSamples; });
 }
 
 std::uint64_t chunk_header_bytes(std::size_t section_count) {
@@ -69,9 +77,10 @@ void check_chunk_counts(const ChunkCounts& counts, const std::string& source) {
   check_side(counts.geometry_n, "geometry", source);
   check_side(counts.radiance_r, "radiance", source);
   std::uint64_t per_probe = 0;
-  for (std::uint32_t kind = 1; kind <= static_cast<std::uint32_t>(ChunkSection::kTexelW); ++kind) {
+  for (std::uint32_t kind = 1; kind <= static_cast<std::uint32_t>(ChunkSection::kQuantisedSamples); ++kind) {
     per_probe += section_bytes_per_probe(static_cast<ChunkSection>(kind), counts);
   }
+  per_probe -= section_bytes_per_probe(ChunkSection::kSamples, counts);  // one or the other; these are fewer
   if (per_probe > PackLimits::kChunkRawBytes / counts.probes) {
     refuse(source, fmt::format("{} probes of {} and {} a side make more than {} GiB in one room", counts.probes,
                                counts.geometry_n, counts.radiance_r, PackLimits::kChunkRawBytes >> 30));
@@ -132,7 +141,7 @@ ChunkHeader read_chunk_header(std::span<const std::byte> chunk, const std::strin
     SectionEntry section{static_cast<ChunkSection>(kind), static_cast<ChunkCodec>(codec), take<std::uint64_t>(in),
                          take<std::uint64_t>(in)};
     if (kind < static_cast<std::uint32_t>(ChunkSection::kPositions) ||
-        kind > static_cast<std::uint32_t>(ChunkSection::kTexelW)) {
+        kind > static_cast<std::uint32_t>(ChunkSection::kQuantisedSamples)) {
       refuse(source, fmt::format("section kind {} is not known", kind));
     }
     if (kind <= last_kind) refuse(source, fmt::format("section kind {} is out of order", kind));
@@ -154,8 +163,12 @@ ChunkHeader read_chunk_header(std::span<const std::byte> chunk, const std::strin
     header.sections.push_back(section);
   }
   if (left != 0) refuse(source, fmt::format("{} bytes too many at its end", left));
-  constexpr std::uint32_t kAllKinds = 0b1111110, kOptional = 1u << static_cast<std::uint32_t>(ChunkSection::kNormals);
-  if ((kinds | kOptional) != kAllKinds) refuse(source, "lacks a section");
+  const auto bit = [](ChunkSection kind) { return 1u << static_cast<std::uint32_t>(kind); };
+  const std::uint32_t quantised = bit(ChunkSection::kQuantisedSamples), samples = bit(ChunkSection::kSamples);
+  if ((kinds & quantised) != 0 && (kinds & samples) != 0) refuse(source, "has its samples twice");
+  if ((kinds & quantised) != 0) kinds = (kinds ^ quantised) | samples;
+  constexpr std::uint32_t kAllKinds = 0b1111110;
+  if ((kinds | bit(ChunkSection::kNormals)) != kAllKinds) refuse(source, "lacks a section");
   return header;
 }
 

@@ -45,6 +45,8 @@ constexpr std::uint64_t mip_texel_count(const ChunkCounts& c) { return (4 * texe
 // Bytes of one probe's array in a section, before compression.
 std::uint64_t section_bytes_per_probe(ChunkSection kind, const ChunkCounts& counts);
 
+bool has_quantised_samples(const ChunkHeader& header);
+
 // Throws BadInput unless the counts are in PackLimits, all sections together included.
 void check_chunk_counts(const ChunkCounts& counts, const std::string& source);
 

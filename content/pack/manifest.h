@@ -14,6 +14,9 @@
 
 namespace probewalk {
 
+// Of a pack with quantised levels; a reader that does not know it refuses the pack by this name.
+inline constexpr const char* kQuantisedFeature = "quantised-samples";
+
 struct LevelEntry {
   std::string chunk;  // 32 hex digits
   std::uint32_t geometry_size = 0;
@@ -21,6 +24,7 @@ struct LevelEntry {
   std::uint64_t bytes_disk = 0;
   std::uint64_t bytes_device = 0;
   double error = -1.0;  // measured; negative = not measured (null in JSON)
+  bool quantised = false;  // its geometry's samples are (sample_tiles.h); the feature "quantised-samples" then
 };
 
 struct RoomEntry {
@@ -55,7 +59,7 @@ struct Manifest {
   std::optional<BakedLight> light;
   std::string credits;
   Bounds bounds;
-  std::vector<std::string> features;  // known: "sky" (some probe sees it), "cuts"
+  std::vector<std::string> features;  // known: "sky" (some probe sees it), "cuts", "quantised-samples"
   double radiance_scale = 1.0;
   double exposure_ev = 0.0;
   std::vector<RoomEntry> rooms;

@@ -15,7 +15,7 @@ namespace probewalk {
 
 namespace {
 
-constexpr std::string_view kKnownFeatures[] = {"sky", "cuts"};
+constexpr std::string_view kKnownFeatures[] = {"sky", "cuts", kQuantisedFeature};
 
 class Checker {
  public:
@@ -87,6 +87,8 @@ class Checker {
     require(is_side(level.geometry_size) && is_side(level.radiance_size),
             "room {}: sizes {} and {} are not powers of two from {} to {}", room, level.geometry_size,
             level.radiance_size, PackLimits::kMinMapSide, PackLimits::kMapSide);
+    require(!level.quantised || std::find(m_.features.begin(), m_.features.end(), kQuantisedFeature) != m_.features.end(),
+            "room {}: a level is quantised but the feature \"{}\" is not named", room, kQuantisedFeature);
     require(level.bytes_disk > 0 && level.bytes_disk <= 2 * PackLimits::kChunkRawBytes,
             "room {}: bytes_disk {} is out of range", room, level.bytes_disk);
     require(level.bytes_device <= PackLimits::kDeviceBytesPerLevel, "room {}: bytes_device {} is out of range", room,

@@ -3,7 +3,8 @@
 //   manifest_hash, format_version, producer, scene {name, hash}, options_hash, scale, scale_statement,
 //   light_statement, light {samples, bounces, cache_spacing_m, seed, recentred} (may be absent), credits, bounds,
 //   features [name], radiance_scale, exposure_ev, rooms [{id, name, bounds, origin_m, first_probe, probe_count,
-//           levels [{chunk, geometry_size, radiance_size, bytes_disk, bytes_device, error (null = not measured)}]}],
+//           levels [{chunk, geometry_size, radiance_size, bytes_disk, bytes_device, error (null = not measured),
+//           quantised (absent = false)}]}],
 //   portals [{rooms [a, b], polygon [[x, y, z]]}], probe_positions_m [[x, y, z]],
 //   grid {origin_m, spacing_m, dims, probe [index]},
 //   floor {origin_m [x, z], cell_m, columns [x, z], node_count, nodes (text, floor_code.h)},
@@ -42,12 +43,14 @@ json to_json(const Bounds& b) { return {to_json(b.lower_m), to_json(b.upper_m)};
 json to_json(const Pose& p) { return {p.position_m.x, p.position_m.y, p.position_m.z, p.yaw_rad, p.pitch_rad}; }
 
 json to_json(const LevelEntry& level) {
-  return {{"chunk", level.chunk},
-          {"geometry_size", level.geometry_size},
-          {"radiance_size", level.radiance_size},
-          {"bytes_disk", level.bytes_disk},
-          {"bytes_device", level.bytes_device},
-          {"error", level.error < 0.0 ? json(nullptr) : json(level.error)}};
+  json entry{{"chunk", level.chunk},
+             {"geometry_size", level.geometry_size},
+             {"radiance_size", level.radiance_size},
+             {"bytes_disk", level.bytes_disk},
+             {"bytes_device", level.bytes_device},
+             {"error", level.error < 0.0 ? json(nullptr) : json(level.error)}};
+  if (level.quantised) entry["quantised"] = true;
+  return entry;
 }
 
 json to_json(const RoomEntry& room);
@@ -198,6 +201,7 @@ LevelEntry read_level(const Member& m) {
     level.error = m["error"].number();
     if (level.error < 0.0) m["error"].refuse("is negative");
   }
+  if (m.has("quantised")) level.quantised = m["quantised"].boolean();
   return level;
 }
 

@@ -11,7 +11,8 @@
 //   u32 section_count; u32 reserved = 0; f64 room_origin_m[3];
 //   section_count times { u32 kind; u32 codec; u64 raw_bytes; u64 stored_bytes; }, kinds strictly ascending;
 //   then the sections' stored bytes in the same order. Nothing lies between or behind them.
-// Every kind below is present once, only kNormals may be absent. A section is the concatenation, probe after probe, of
+// Every kind below is present once, but for kNormals, which may be absent, and kSamples and kQuantisedSamples, of which
+// one is there. A section is the concatenation, probe after probe, of
 // that probe's array after the kind's transform; raw_bytes is its size, implied by the counts; the codec then
 // compresses the section as a whole (kZstd: one or more zstd frames, window at most 2^kZstdWindowLog bytes).
 //
@@ -43,6 +44,9 @@ enum class ChunkSection : std::uint32_t {
   kNormals = 4,    // (n+1)^2 u16. Byte planes. Absent when the chunk has no cut; then all are 0
   kRadiance = 5,   // mips of r^2, (r/2)^2 ... 1 u32 E5B9G9R9. Byte planes
   kTexelW = 6,     // r^2 u16. Prediction with side r, byte planes
+  // The same samples as kSamples, each within kStraySampleError of what it was, in about a third of the bytes. Transform:
+  // content/pack/sample_tiles.cpp. The manifest names the feature "quantised-samples" where a chunk has them.
+  kQuantisedSamples = 7,
 };
 
 // A reader refuses codes it does not know, by number.

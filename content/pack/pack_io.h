@@ -19,8 +19,21 @@ struct RoomLevel {
   std::vector<ProbeMap> probes;  // all of the same sizes
 };
 
-// Deterministic. Positions are stored relative to origin_m in float.
-std::vector<std::byte> encode_chunk(const RoomLevel& level);
+enum class SampleCoding {
+  kFloat,      // to the bit
+  kQuantised,  // within kStraySampleError, on planes kPlaneSampleError (sample_tiles.h)
+  kSmaller,    // whichever takes fewer bytes
+};
+
+// What a chunk's samples take in each coding that was tried; 0 = was not.
+struct SampleSizes {
+  std::uint64_t bytes_float = 0, bytes_quantised = 0;
+};
+
+// Deterministic. Positions are stored relative to origin_m in float. Maps whose border is not folded onto itself, which
+// nothing bakes, can be kept to the bit only: kQuantised refuses them.
+std::vector<std::byte> encode_chunk(const RoomLevel& level, SampleCoding samples = SampleCoding::kFloat,
+                                    SampleSizes* sizes = nullptr);
 // Refuses anything out of the format or its limits, non-finite or negative samples, positions off by kCoordinate_m.
 // `source` names the chunk in errors. Throws BadInput.
 RoomLevel decode_chunk(std::span<const std::byte> bytes, const std::string& source);

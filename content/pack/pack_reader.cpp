@@ -19,7 +19,8 @@ namespace {
 constexpr const char* kRemedy = "bake the pack again or copy it anew";
 
 // Before anything is decompressed: no more than the manifest says, which budgets are kept by.
-void check_size(const ChunkCounts& counts, const RoomEntry& room, const LevelEntry& level, const std::string& source) {
+void check_size(const ChunkHeader& header, const RoomEntry& room, const LevelEntry& level, const std::string& source) {
+  const ChunkCounts& counts = header.counts;
   const auto require = [&](bool holds, const char* what) {
     if (!holds) throw BadInput(fmt::format("{}: {} differ from the manifest's; {}", source, what, kRemedy));
   };
@@ -28,6 +29,7 @@ void check_size(const ChunkCounts& counts, const RoomEntry& room, const LevelEnt
   const std::uint64_t without_cuts =
       device_probe_bytes(static_cast<int>(counts.geometry_n), static_cast<int>(counts.radiance_r), 0);
   require(level.bytes_device / counts.probes >= without_cuts, "bytes on the device");
+  require(has_quantised_samples(header) == level.quantised, "kinds of samples");
 }
 
 // The chunk is sound by itself; is it the one that the manifest means?
@@ -84,7 +86,7 @@ RoomLevel decode_level(const Manifest& manifest, std::size_t room, std::size_t l
   const RoomEntry& room_entry = manifest.rooms.at(room);
   const LevelEntry& level_entry = room_entry.levels.at(level);
   const std::string source = fmt::format("chunk {} (room {}, level {})", level_entry.chunk, room_entry.id, level);
-  check_size(read_chunk_header(bytes, source).counts, room_entry, level_entry, source);
+  check_size(read_chunk_header(bytes, source), room_entry, level_entry, source);
   RoomLevel found = decode_chunk(bytes, source);
   check_belongs(found, manifest, room_entry, source);
   return found;

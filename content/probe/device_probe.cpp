@@ -155,6 +155,17 @@ std::size_t count_cut_cells(const ProbeGeometry& geometry) {
   return count;
 }
 
+std::size_t count_planar_entries(const DeviceProbe& probe) {
+  const auto n_log2 = static_cast<int>(probe.record.n_log2);
+  const auto begin = static_cast<std::size_t>(f32::pyramid_begin(1 << n_log2));
+  const auto end = begin + static_cast<std::size_t>(f32::pyramid_words(n_log2));
+  std::size_t count = 0;
+  for (std::size_t k = begin; k < end; ++k) {
+    count += static_cast<std::size_t>(std::popcount(probe.geometry[k] & (kEntryPlanar | kEntryPlanar << 16)));
+  }
+  return count;
+}
+
 std::uint64_t device_probe_bytes(int n, int r, std::size_t cut_cells) {
   const std::uint64_t n2 = static_cast<std::uint64_t>(n) * n;
   const std::uint64_t vertices = static_cast<std::uint64_t>(f32::pyramid_begin(n));

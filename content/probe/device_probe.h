@@ -44,6 +44,8 @@ std::uint64_t device_block_bytes(const std::vector<std::uint32_t>& words);
 std::uint64_t device_bytes(const DeviceProbe& probe);
 // device_bytes is at most this much more than device_probe_bytes.
 inline constexpr std::uint64_t kMostPadding_bytes = 2 * (kDeviceBlockAlignment - sizeof(std::uint32_t));
+// Entries of the pyramid that stand for one plane of many cells: what makes walls cheap.
+std::size_t count_planar_entries(const DeviceProbe& probe);
 std::size_t count_cut_cells(const ProbeGeometry& geometry);
 
 // Position as float plus what rounding left.

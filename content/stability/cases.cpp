@@ -307,6 +307,13 @@ std::vector<HardCase> hard_cases() {
       {"around the pillar", "The probe is inside a solid: it must not speak of what is outside.", around_pillar}, 2);
   add(PlaceId::kLeast, {"random", "Packs' least and greatest w and sky, side by side, in one map.", random_ray}, 4);
   add(PlaceId::kLeast, {"anywhere", "The same, from a micrometre to a thousand kilometres away.", anywhere}, 2);
+  add(PlaceId::kQuantised, {"random", "Samples as quantised packs hold them: walls off by a millionth, from tile to tile.", random_ray}, 4);
+  add(PlaceId::kQuantised, {"along cell edges", "The same, along the seams between tiles among others.", along_cell_edges}, 2);
+  add(PlaceId::kQuantised, {"handed on", "The same, from where another probe's knowledge ended.", handed_on}, 2);
+  add(PlaceId::kQuantisedGrille, {"random", "The same with cuts everywhere: most samples on no plane, off by up to 3e-5.", random_ray}, 4);
+  add(PlaceId::kQuantisedLimits, {"random", "Tiles at the limits of what they hold: one value, a float's last bit, least and greatest w, sky, codes without end.", random_ray}, 4);
+  add(PlaceId::kQuantisedLimits, {"anywhere", "The same, from a micrometre to a thousand kilometres away.", anywhere}, 2);
+  add(PlaceId::kQuantisedLimits, {"aimed at vertices", "The same, where the pieces meet.", at_vertices}, 2);
   add(PlaceId::kSteps, {"random", "Samples rounded to 16 bits a probe: every plane is a staircase.", random_ray}, 4);
   add(PlaceId::kTorn,
       {"random", "Nine edges in ten are cut, at first and last fractions, with slopes of all kinds.", random_ray}, 4);

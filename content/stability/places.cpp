@@ -7,6 +7,7 @@
 
 #include "content/bake/bake_probe.h"
 #include "content/pack/pack_format.h"
+#include "content/pack/sample_tiles.h"
 #include "content/scene/ray_scene.h"
 #include "content/stability/low_discrepancy.h"
 #include "content/stability/small_scenes.h"
@@ -80,6 +81,40 @@ ProbeGeometry in_steps(ProbeGeometry geometry) {
   return geometry;
 }
 
+ProbeGeometry quantised(ProbeGeometry geometry) {
+  geometry.w = encode_tiled_samples(geometry.w, static_cast<std::size_t>(geometry.n)).w;
+  return geometry;
+}
+
+// Four by four tiles, each at a limit of its own.
+ProbeGeometry quantised_limits() {
+  constexpr float kLeast = PackLimits::kLeastW_per_m, kGreatest = PackLimits::kGreatestW_per_m;
+  Random random(41);
+  return quantised(made(64, [&](int i, int j) {
+    const int tile = std::min(i / 16, 3) + 4 * std::min(j / 16, 3);
+    const float x = static_cast<float>(i % 16), y = static_cast<float>(j % 16);
+    const bool odd = ((i ^ j) & 1) != 0;
+    switch (tile) {
+      case 0: return 0.5f;                                                      // one value
+      case 1: return odd ? 0.5f : std::nextafter(0.5f, 1.0f);                   // one step of a float
+      case 2: return odd ? kLeast : 0.0f;                                       // least beside the sky
+      case 3: return odd ? kGreatest : 0.0f;                                    // greatest beside the sky
+      case 4: return odd ? kLeast : kGreatest;                                  // no step spans it
+      case 5: return odd ? 0.25f : 120.0f;                                      // the largest codes of 24 bits
+      case 6: return odd ? 0.25f : 160.0f;                                      // ... and one beyond
+      case 7: return kLeast * (1.0f + x + 2.0f * y);                            // a plane down to the least
+      case 8: return kGreatest * (1.0f - 0.02f * x - 0.03f * y);                // ... and up to the greatest
+      case 9: return 0.5f + 0.004f * x - 0.002f * y;                            // a plane that goes on ...
+      case 10: return 0.5f + 0.004f * (x + 16.0f) - 0.002f * y;                 // ... here
+      case 11: return std::max(0.5f + 0.01f * x, 0.6f - 0.01f * y);             // two that meet
+      case 12: return x == 7.0f && y == 7.0f ? 1.0f : 0.0f;                     // one sample in the sky
+      case 13: return x < 8.0f ? 0.0f : 0.5f;                                   // a wall's end before the sky
+      case 14: return static_cast<float>(std::exp2(random(-29.8, 19.9)));       // all there is
+      default: return static_cast<float>(0.5 + 0.1 * std::sin(0.3 * i) * std::cos(0.2 * j));  // no plane anywhere
+    }
+  }));
+}
+
 ProbeGeometry torn() {
   Random random(37);
   ProbeGeometry geometry = made(64, [&](int, int) { return static_cast<float>(std::exp2(random(-3, 2))); });
@@ -136,6 +171,9 @@ const std::vector<Recipe>& recipes() {
        }},
       {PlaceId::kLeast, "samples at limits", 32, 1.0, [] { return at_limits(); }},
       {PlaceId::kSteps, "samples of 16 bits", 64, 1.0, [] { return in_steps(room(64)); }},
+      {PlaceId::kQuantised, "quantised room", 128, 1.0, [] { return quantised(room(128)); }},
+      {PlaceId::kQuantisedGrille, "quantised grille", 128, 1.0, [] { return quantised(grille(128)); }},
+      {PlaceId::kQuantisedLimits, "quantised tiles at limits", 64, 1.0, [] { return quantised_limits(); }},
       {PlaceId::kTorn, "cuts at limits", 64, 1.0, [] { return torn(); }},
   };
   return all;

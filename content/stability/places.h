@@ -24,6 +24,10 @@ enum class PlaceId {
   kSolid,   // a probe inside a pillar
   kLeast,   // packs' limits: samples of the least and the greatest w, and sky, at random
   kSteps,   // the room's samples rounded to 65535 steps of the greatest
+  kQuantised,        // room and grille as packs with quantised samples hold them
+  kQuantisedGrille,
+  kQuantisedLimits,  // tiles of quantised samples at their limits: one value, a float's last bit, least and greatest
+                     // beside sky, the largest code, planes down to the least w
   kTorn,    // every edge cut, at the first or the last fraction, every slope at its clamp or random
 };
 

@@ -4,13 +4,19 @@
 
 #include <cmath>
 #include <cstring>
+#include <functional>
 #include <limits>
+#include <map>
 
+#include "content/bake/bake_probe.h"
 #include "content/error.h"
 #include "content/pack/chunk_layout.h"
+#include "content/pack/sample_tiles.h"
 #include "content/pack/section_transform.h"
+#include "content/pack/tile_plane.h"
 #include "content/pack/zstd_stream.h"
 #include "pack_fixture.h"
+#include "support/room_pack.h"
 
 namespace probewalk {
 namespace {
@@ -29,6 +35,19 @@ std::string refusal(const std::vector<std::byte>& chunk) {
 template <class T>
 void overwrite(std::vector<std::byte>& bytes, std::size_t at, T value) {
   std::memcpy(bytes.data() + at, &value, sizeof value);
+}
+
+// Two probes of a furnished room.
+RoomLevel room_level(int n) {
+  static const Scene scene = test::furnished_room();
+  const RayScene rays(scene);
+  RoomLevel level;
+  for (const glm::dvec3 position_m : {glm::dvec3(-1.0, 1.25, 0.5), glm::dvec3(1.5, 1.625, -0.5)}) {
+    ProbeMap probe = noise_probe(8, 8, false, 1, position_m);
+    probe.geometry = bake_geometry(rays, position_m, n);
+    level.probes.push_back(std::move(probe));
+  }
+  return level;
 }
 
 constexpr std::size_t kAtVersion = 8, kAtProbes = 12, kAtGeometry = 16, kAtRadiance = 20, kAtSections = 24,
@@ -273,6 +292,201 @@ TEST(Chunk, WindowsBeyondTheLimitAreRefused) {
   EXPECT_EQ(refusal(with_section(chunk, ChunkSection::kPositions, ChunkCodec::kZstd, frame(13))), "accepted");
   EXPECT_THAT(refusal(with_section(chunk, ChunkSection::kPositions, ChunkCodec::kZstd, frame(14))),
               HasSubstr("does not decompress"));
+}
+
+// The quantised section's words before compression, to be damaged one by one.
+std::vector<std::byte> quantised_section(const std::vector<float>& w, std::size_t n) {
+  return encode_tiled_samples(w, n).bytes;
+}
+
+std::vector<std::byte> with_quantised(const std::vector<std::byte>& raw) {
+  static const std::vector<std::byte> chunk = encode_chunk(room_level(16), SampleCoding::kQuantised);
+  return with_section(chunk, ChunkSection::kQuantisedSamples, ChunkCodec::kRaw, raw);
+}
+
+TEST(QuantisedChunk, KeepsEverythingButSamplesToTheBitAndThoseWithinTheirError) {
+  for (const int n : {8, 16, 32, 64}) {
+    const RoomLevel level = room_level(n);
+    const RoomLevel read = decode_chunk(encode_chunk(level, SampleCoding::kQuantised), "chunk");
+    RoomLevel same = read;
+    double worst = 0.0;
+    for (std::size_t p = 0; p < level.probes.size(); ++p) {
+      const std::vector<float>&should = level.probes[p].geometry.w, &is = read.probes[p].geometry.w;
+      ASSERT_EQ(is.size(), should.size());
+      EXPECT_TRUE(has_folded_border(is, static_cast<std::size_t>(n)));
+      EXPECT_TRUE(same_bits(is, encode_tiled_samples(should, static_cast<std::size_t>(n)).w));
+      for (std::size_t k = 0; k < is.size(); ++k) {
+        ASSERT_EQ(is[k] == 0.0f, should[k] == 0.0f) << k;
+        if (should[k] > 0.0f) worst = std::max(worst, std::abs(double{is[k]} - double{should[k]}) / double{should[k]});
+      }
+      same.probes[p].geometry.w = should;
+    }
+    EXPECT_LE(worst, kStraySampleError) << n;
+    EXPECT_TRUE(same_level(same, level));
+  }
+}
+
+TEST(QuantisedChunk, SameProbesMakeSameBytes) {
+  EXPECT_EQ(encode_chunk(room_level(32), SampleCoding::kQuantised),
+            encode_chunk(room_level(32), SampleCoding::kQuantised));
+}
+
+TEST(QuantisedChunk, WallsStayPlanarAndTakeFewBytes) {
+  const RoomLevel level = room_level(128);
+  SampleSizes sizes;
+  const auto chunk = encode_chunk(level, SampleCoding::kSmaller, &sizes);
+  ASSERT_TRUE(has_quantised_samples(read_chunk_header(chunk, "chunk")));
+  EXPECT_LT(2 * sizes.bytes_quantised, sizes.bytes_float);
+  const RoomLevel read = decode_chunk(chunk, "chunk");
+  for (std::size_t p = 0; p < level.probes.size(); ++p) {
+    const std::size_t before = count_planar_entries(build_device_probe(level.probes[p]));
+    EXPECT_GT(before, 100u);
+    EXPECT_GT(count_planar_entries(build_device_probe(read.probes[p])), before * 97 / 100);
+  }
+}
+
+TEST(QuantisedChunk, TheSmallerCodingIsTaken) {
+  SampleSizes sizes;
+  RoomLevel noise = noise_level(1, 64, 8, false);
+  EXPECT_FALSE(
+      has_quantised_samples(read_chunk_header(encode_chunk(noise, SampleCoding::kSmaller), "chunk")));  // not folded
+  EXPECT_THROW(encode_chunk(noise, SampleCoding::kQuantised), BadInput);
+  const RoomLevel room = room_level(32);
+  const bool quantised =
+      has_quantised_samples(read_chunk_header(encode_chunk(room, SampleCoding::kSmaller, &sizes), "chunk"));
+  EXPECT_EQ(quantised, sizes.bytes_quantised < sizes.bytes_float);
+  EXPECT_FALSE(has_quantised_samples(read_chunk_header(encode_chunk(room), "chunk")));
+}
+
+TEST(QuantisedChunk, EveryTruncationIsRefused) {
+  RoomLevel level = room_level(16);
+  level.probes.resize(1);
+  const auto whole = encode_chunk(level, SampleCoding::kQuantised);
+  for (std::size_t size = 0; size < whole.size(); ++size) {
+    const std::vector<std::byte> part(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size));
+    ASSERT_NE(refusal(part), "accepted") << size;
+  }
+}
+
+// Heads and words as they stand before compression: whatever the bits, an error or samples in range.
+TEST(QuantisedChunk, FlippedBitsNeverLetBadSamplesThrough) {
+  const RoomLevel level = room_level(16);
+  std::vector<std::byte> raw;
+  for (const ProbeMap& probe : level.probes) {
+    const auto one = quantised_section(probe.geometry.w, 16);
+    raw.insert(raw.end(), one.begin(), one.end());
+  }
+  std::size_t refused = 0;
+  for (std::size_t at = 0; at < raw.size(); ++at) {
+    for (const int bit : {0, 3, 6, 7}) {
+      auto bytes = raw;
+      bytes[at] ^= static_cast<std::byte>(1 << bit);
+      try {
+        const RoomLevel read = decode_chunk(with_quantised(bytes), "chunk");
+        for (const float w : read.probes[0].geometry.w) ASSERT_TRUE(w == 0.0f || (w >= 1e-9f && w <= 1e6f));
+      } catch (const BadInput&) {
+        ++refused;
+      }
+    }
+  }
+  EXPECT_GT(refused, raw.size());
+}
+
+TEST(QuantisedChunk, HeadsOutOfTheFormatAreRefused) {
+  // One tile of 17 x 17 vertices: 14 head words, in byte planes, then the words'.
+  const auto with_head = [](std::size_t word, std::uint32_t value) {
+    const std::size_t n = 16;
+    std::vector<float> w((n + 1) * (n + 1), 0.5f);
+    auto raw = quantised_section(w, n);
+    for (std::size_t plane = 0; plane < 4; ++plane)
+      raw[plane * kTileHeadWords + word] = static_cast<std::byte>(value >> (24 - 8 * plane) & 0xff);
+    std::vector<float> out(w.size());
+    return decode_tiled_samples(raw, n, out);
+  };
+  EXPECT_TRUE(with_head(0, 0));
+  EXPECT_FALSE(with_head(0, 0x7f800000));  // an endless step
+  EXPECT_FALSE(with_head(0, 0x7fc00000));
+  EXPECT_FALSE(with_head(1, 9));  // a source that is none
+  EXPECT_FALSE(with_head(1, 0x20000));
+  EXPECT_FALSE(with_head(1, 1));           // a plane of a tile that is not there
+  EXPECT_FALSE(with_head(2, 0x7fc00000));  // base
+  EXPECT_FALSE(with_head(2, 0xff7fffff));
+  EXPECT_FALSE(with_head(3, 0x7f7fffff));  // along_x: sums of greatest floats
+  EXPECT_FALSE(with_head(2, 0x00000001));  // a denormal base is no sample
+  EXPECT_TRUE(with_head(2, 0x3f800000));
+}
+
+TEST(QuantisedChunk, SamplesTwiceOrNotAtAllAreRefused) {
+  const auto chunk = encode_chunk(room_level(16), SampleCoding::kQuantised);
+  ChunkHeader header = read_chunk_header(chunk, "chunk");
+  const auto remade = [&](const std::vector<ChunkSection>& kinds) {
+    ChunkHeader made = header;
+    made.sections.clear();
+    std::uint64_t bytes = 0;
+    for (const ChunkSection kind : kinds) {
+      const std::uint64_t raw = made.counts.probes * section_bytes_per_probe(kind, made.counts);
+      made.sections.push_back({kind, ChunkCodec::kRaw, raw, raw});
+      bytes += raw;
+    }
+    auto out = write_chunk_header(made);
+    out.resize(out.size() + bytes);
+    return refusal(out);
+  };
+  using enum ChunkSection;
+  EXPECT_THAT(remade({kPositions, kSamples, kEdges, kRadiance, kTexelW, kQuantisedSamples}), HasSubstr("twice"));
+  EXPECT_THAT(remade({kPositions, kEdges, kRadiance, kTexelW}), HasSubstr("lacks"));
+  // Zeros are samples on planes that are not there.
+  EXPECT_THAT(remade({kPositions, kEdges, kRadiance, kTexelW, kQuantisedSamples}), HasSubstr("quantised sample"));
+}
+
+// What samples a tile may hold at its limits, all of them folded.
+TEST(QuantisedChunk, HardTilesKeepTheirError) {
+  constexpr std::size_t n = 32;
+  const auto made = [](const std::function<float(std::size_t, std::size_t)>& value) {
+    std::vector<float> w((n + 1) * (n + 1));
+    for (std::size_t j = 0; j <= n; ++j) {
+      for (std::size_t i = 0; i <= n; ++i) w[j * (n + 1) + i] = value(i, j);
+    }
+    each_border_vertex(n, [&](std::size_t vertex, std::size_t original) { w[vertex] = w[original]; });
+    return w;
+  };
+  const float least = PackLimits::kLeastW_per_m, most = PackLimits::kGreatestW_per_m;
+  Noise noise(3);
+  const std::map<std::string, std::vector<float>> maps{
+      {"one value", made([](auto, auto) { return 0.125f; })},
+      {"the least value", made([&](auto, auto) { return least; })},
+      {"the greatest value", made([&](auto, auto) { return most; })},
+      {"least and greatest in turns", made([&](auto i, auto j) { return (i + j) % 2 ? least : most; })},
+      {"sky beside the least", made([&](auto i, auto j) { return (i * 7 + j) % 3 ? least : 0.0f; })},
+      {"sky beside the greatest", made([&](auto i, auto j) { return (i * 7 + j) % 3 ? most : 0.0f; })},
+      {"one step of a float", made([](auto i, auto j) { return (i ^ j) & 1 ? 0.5f : std::nextafter(0.5f, 1.0f); })},
+      {"a plane to the least",
+       made([&](auto i, auto j) { return static_cast<float>(least * (1.0 + 0.5 * double(i) + double(j))); })},
+      {"a plane to the greatest",
+       made([&](auto i, auto j) { return static_cast<float>(most * (1.0 - 0.01 * double(i) - 0.02 * double(j))); })},
+      {"steps of all sizes",
+       made([&](auto, auto) { return static_cast<float>(std::exp2(-29.0 + 48.0 * noise.unit())); })},
+      {"the largest code", made([](auto i, auto) { return i % 2 ? 1.0f : 500.0f; })},
+      {"beyond the largest code", made([](auto i, auto) { return i % 2 ? 1.0f : 600.0f; })},
+      {"sky alone", made([](auto, auto) { return 0.0f; })},
+      {"one surface in the sky", made([](auto i, auto j) { return i == 5 && j == 9 ? 3.0f : 0.0f; })},
+      {"powers of two", made([](auto i, auto j) { return std::ldexp(1.0f, static_cast<int>((i * 5 + j) % 40) - 25); })},
+      {"noise", made([&](auto, auto) { return static_cast<float>(0.01 + noise.unit()); })}};
+  for (const auto& [name, w] : maps) {
+    const TiledSamples coded = encode_tiled_samples(w, n);
+    std::vector<float> read(w.size());
+    ASSERT_TRUE(decode_tiled_samples(coded.bytes, n, read)) << name;
+    EXPECT_TRUE(same_bits(read, coded.w)) << name;
+    EXPECT_LE(coded.worst, kStraySampleError) << name;
+    for (std::size_t k = 0; k < w.size(); ++k) {
+      ASSERT_EQ(read[k] == 0.0f, w[k] == 0.0f) << name << " at " << k;
+      ASSERT_LE(std::abs(double{read[k]} - double{w[k]}), kStraySampleError * double{w[k]}) << name << " at " << k;
+    }
+  }
+  EXPECT_EQ(encode_tiled_samples(maps.at("one value"), n).strays, 0u);
+  EXPECT_EQ(encode_tiled_samples(maps.at("one value"), n).worst, 0.0);
+  EXPECT_GT(encode_tiled_samples(maps.at("least and greatest in turns"), n).float_tiles, 0u);
+  EXPECT_EQ(encode_tiled_samples(maps.at("noise"), n).float_tiles, 0u);
 }
 
 TEST(Chunk, ProbesOfDifferentSizesAreNotPacked) {

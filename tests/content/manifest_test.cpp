@@ -107,6 +107,18 @@ TEST(Manifest, AnEditIsCalledAnEdit) {
   EXPECT_THAT(refusal(text), HasSubstr("damaged or edited"));
 }
 
+// A reader that does not know quantised samples must meet the feature's name before it meets a chunk.
+TEST(Manifest, QuantisedLevelsAreNamedAsAFeature) {
+  Manifest manifest = two_rooms();
+  manifest.rooms[0].levels[0].quantised = true;
+  EXPECT_THROW(serialise_manifest(manifest), BadInput);
+  manifest.features.emplace_back(kQuantisedFeature);
+  const Manifest read = parse_manifest(serialise_manifest(manifest), "pack.json");
+  EXPECT_TRUE(read.rooms[0].levels[0].quantised);
+  EXPECT_FALSE(read.rooms[1].levels[0].quantised);
+  EXPECT_EQ(serialise_manifest(two_rooms()).find("quantised"), std::string::npos);  // what has none is as it was
+}
+
 TEST(Manifest, ForeignAndNewerTextsAreRefusedByName) {
   EXPECT_THAT(refusal("{}"), HasSubstr("not the manifest of a probe pack"));
   EXPECT_THAT(refusal("[1,2]"), HasSubstr("not the manifest of a probe pack"));

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "content/pack/chunk_layout.h"
+#include "content/pack/sample_tiles.h"
 #include "content/pack/zstd_stream.h"
 #include "pack_fixture.h"
 
@@ -92,6 +93,44 @@ TEST(PackGolden, AChunkWrittenByHandIsRead) {
   const auto chunk = chunk_by_hand(level);
   EXPECT_EQ(content_hash(chunk), "7bd4f4b25277cd97e9c3705928cab64d");
   EXPECT_TRUE(same_level(decode_chunk(chunk, "chunk"), level));
+}
+
+// A quantised section of 8 cells a side, one tile, by hand: a plane, a window of sky in it, and a stray.
+TEST(PackGolden, QuantisedSamplesWrittenByHandAreRead) {
+  std::vector<std::uint32_t> head(14, 0), words(81, 0);
+  const auto bits = [](float value) {
+    std::uint32_t word;
+    std::memcpy(&word, &value, 4);
+    return word;
+  };
+  head[0] = bits(0x1p-10f);  // step
+  head[2] = bits(0.5f);      // plane 1: base, along x, along y
+  head[3] = bits(0x1p-6f);
+  head[4] = bits(-0x1p-7f);
+  head[1] = 0;
+  // Row 3: index 0 from column 4 on is 1 xor 1, the last column of the row is 0 again; row 4 begins with the index above it.
+  words[3 * 9 + 4] = 1u << 24;            // 1 -> 0, the sky
+  words[3 * 9 + 5] = (0u ^ 5u) << 24 | 6;  // 0 -> 5, a stray: code +3
+  words[3 * 9 + 6] = (5u ^ 1u) << 24;      // 5 -> 1
+  Bytes section;
+  section.put_planes(head);
+  section.put_planes(words);
+  std::vector<float> w(81);
+  ASSERT_TRUE(decode_tiled_samples(section.take(), 8, w));
+  const auto plane = [](int x, int y) { return 0.5f + 0x1p-6f * static_cast<float>(x) - 0x1p-7f * static_cast<float>(y); };
+  for (int y = 1; y < 8; ++y) {
+    for (int x = 1; x < 8; ++x) {
+      if (y == 3 && (x == 4 || x == 5)) continue;
+      EXPECT_EQ(w[static_cast<std::size_t>(9 * y + x)], plane(x, y)) << x << ", " << y;
+    }
+  }
+  EXPECT_EQ(w[3 * 9 + 4], 0.0f);
+  EXPECT_EQ(w[3 * 9 + 5], plane(5, 2) + 3 * 0x1p-10f);  // sky to the left: predicted from above
+  // The border: each edge folded onto itself, the corners all as the first.
+  EXPECT_EQ(w[6], plane(2, 0));
+  EXPECT_EQ(w[9 * 5 + 8], plane(8, 3));
+  EXPECT_EQ(w[8], plane(0, 0));
+  EXPECT_EQ(w[80], plane(0, 0));
 }
 
 // Compressed bytes differ from one version of zstd to the next; what is compressed does not.

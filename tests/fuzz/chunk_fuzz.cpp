@@ -6,6 +6,7 @@
 #include "content/error.h"
 #include "content/pack/chunk_layout.h"
 #include "content/pack/pack_io.h"
+#include "content/pack/tile_plane.h"
 #include "content/probe/probe_set.h"
 #include "content/probe/tracer_f32.h"
 #include "fuzz/fuzz_target.h"
@@ -60,6 +61,24 @@ void trace(const RoomLevel& level) {
   }
 }
 
+// Whatever the samples, quantised they are what the encoder says, within their error.
+void quantise(RoomLevel level) {
+  for (ProbeMap& probe : level.probes) {
+    std::vector<float>& w = probe.geometry.w;
+    each_border_vertex(static_cast<std::size_t>(probe.geometry.n),
+                       [&](std::size_t vertex, std::size_t original) { w[vertex] = w[original]; });
+  }
+  const RoomLevel decoded = decode_chunk(plain_chunk(level, true), "quantised chunk");
+  for (std::size_t p = 0; p < level.probes.size(); ++p) {
+    const std::vector<float>&should = level.probes[p].geometry.w, &is = decoded.probes[p].geometry.w;
+    for (std::size_t k = 0; k < should.size(); ++k) {
+      require((is[k] == 0.0f) == (should[k] == 0.0f), "the sky of a quantised chunk");
+      require(std::abs(double{is[k]} - double{should[k]}) <= kStraySampleError * double{should[k]}, "a quantised sample");
+    }
+  }
+  trace(decoded);
+}
+
 bool small(const ChunkCounts& counts) {
   return counts.probes <= kMaxProbes && counts.geometry_n <= kMaxSide && counts.radiance_r <= kMaxSide;
 }
@@ -86,5 +105,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
                   "a sound chunk changes when decoded");
   }
   fuzz::trace(decoded);
+  fuzz::quantise(repaired);
   return 0;
 }

@@ -50,6 +50,9 @@ void make_chunks(const fs::path& folder) {
   write(folder / "two-probes", plain_chunk(baked(test::furnished_room(), {{-1.0, 1.2, 0.4}, {1.5, 1.6, -0.6}}, 8, 8)));
   write(folder / "noise", plain_chunk(noise_level(1, 8, 8, true)));
   write(folder / "noise-zstd", encode_chunk(noise_level(1, 8, 8, true)));
+  write(folder / "room-quantised", plain_chunk(room, true));
+  write(folder / "grille-quantised", plain_chunk(baked(test::grille_room(), {{-0.7, 1.4, 0.9}}, 16, 8), true));
+  write(folder / "room-quantised-zstd", encode_chunk(room, SampleCoding::kQuantised));
   RoomLevel sky = room;
   for (float& w : sky.probes[0].geometry.w) w = 0.0f;
   write(folder / "sky-zstd", encode_chunk(sky));

@@ -7,6 +7,7 @@
 
 #include "content/pack/chunk_layout.h"
 #include "content/pack/pack_io.h"
+#include "content/pack/sample_tiles.h"
 #include "content/pack/section_transform.h"
 
 namespace probewalk::fuzz {
@@ -49,19 +50,23 @@ inline void append_section(std::vector<std::byte>& out, ChunkSection kind, const
       case ChunkSection::kTexelW:
         append_planes(out, residuals_of<std::uint16_t>(r.texel_w, static_cast<std::size_t>(r.r)));
         break;
+      case ChunkSection::kQuantisedSamples:
+        append(out, encode_tiled_samples(g.w, static_cast<std::size_t>(g.n)).bytes);
+        break;
     }
   }
 }
 
-// Every section is raw; normals are always there.
-inline std::vector<std::byte> plain_chunk(const RoomLevel& level) {
+// Every section is raw; normals are always there. Quantised: borders are folded.
+inline std::vector<std::byte> plain_chunk(const RoomLevel& level, bool quantised = false) {
   ChunkHeader header;
   const ProbeMap& first = level.probes.front();
   header.counts = {static_cast<std::uint32_t>(level.probes.size()), static_cast<std::uint32_t>(first.geometry.n),
                    static_cast<std::uint32_t>(first.radiance.r)};
   header.room_origin_m = level.origin_m;
   std::vector<std::byte> body;
-  for (std::uint32_t kind = 1; kind <= static_cast<std::uint32_t>(ChunkSection::kTexelW); ++kind) {
+  for (std::uint32_t kind = 1; kind <= static_cast<std::uint32_t>(ChunkSection::kQuantisedSamples); ++kind) {
+    if (static_cast<ChunkSection>(kind) == (quantised ? ChunkSection::kSamples : ChunkSection::kQuantisedSamples)) continue;
     const std::size_t before = body.size();
     append_section(body, static_cast<ChunkSection>(kind), level);
     const std::uint64_t bytes = body.size() - before;

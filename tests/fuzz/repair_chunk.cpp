@@ -7,6 +7,7 @@
 
 #include "content/pack/chunk_layout.h"
 #include "content/pack/sample_range.h"
+#include "content/pack/sample_tiles.h"
 #include "content/pack/section_transform.h"
 #include "content/pack/zstd_stream.h"
 
@@ -86,6 +87,13 @@ void read_section(Source source, ChunkSection kind, const ChunkCounts& counts, R
         for (const std::uint32_t word : bits) g.w.push_back(sample_near(word));
         break;
       }
+      case ChunkSection::kQuantisedSamples: {
+        const std::vector<std::byte> bytes = source.take(tiled_sample_bytes(counts.geometry_n));
+        g.w.resize(vertex_count(counts));
+        if (decode_tiled_samples(bytes, counts.geometry_n, g.w)) break;
+        for (float& w : g.w) w = sample_near(std::bit_cast<std::uint32_t>(w));
+        break;
+      }
       case ChunkSection::kEdges:
         g.edges_horizontal = edges(source, straight_edge_count(counts));
         g.edges_vertical = edges(source, straight_edge_count(counts));
@@ -128,7 +136,7 @@ RoomLevel repaired_level(std::span<const std::byte> damaged) {
   Source table(header.left());
   Source body(damaged.subspan(std::min<std::size_t>(chunk_header_bytes(section_count), damaged.size())));
   for (std::uint32_t s = 0; s < section_count; ++s) {
-    const auto kind = static_cast<ChunkSection>(1 + (table.value<std::uint32_t>() + 5) % 6);
+    const auto kind = static_cast<ChunkSection>(1 + (table.value<std::uint32_t>() + 6) % 7);
     const bool packed = table.value<std::uint32_t>() == static_cast<std::uint32_t>(ChunkCodec::kZstd);
     table.take(8);
     const auto stored = table.value<std::uint64_t>();

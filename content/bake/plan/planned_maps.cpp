@@ -28,11 +28,11 @@ ProbeRadiance tiny_radiance() {
   return map;
 }
 
-std::uint64_t bytes_on_disk(const ProbeMap& map) {
+std::vector<std::byte> chunk_of(const ProbeMap& map, SampleCoding samples) {
   RoomLevel level;
   level.origin_m = map.geometry.position_m;
   level.probes.push_back(map);
-  return encode_chunk(level).size();
+  return encode_chunk(level, samples);
 }
 
 }  // namespace
@@ -41,12 +41,14 @@ const PlannedMaps::Part& PlannedMaps::geometry(std::uint32_t probe, glm::dvec3 p
   const auto [found, is_new] = geometry_.try_emplace({probe, n});
   Part& part = found->second;
   if (!is_new) return part;
-  const ProbeMap map{maps_.geometry(position_m, n), tiny_radiance()};
+  ProbeMap map{maps_.geometry(position_m, n), tiny_radiance()};
+  const std::vector<std::byte> chunk = chunk_of(map, samples_);
+  if (samples_ != SampleCoding::kFloat) map.geometry.w = decode_chunk(chunk, "a planned map").probes[0].geometry.w;
   DeviceProbe device = build_device_probe(map);
   part.record = device.record;
   part.words = std::move(device.geometry);
   part.record.geometry_address = host_address(part.words.data());
-  part.bytes_disk = bytes_on_disk(map);
+  part.bytes_disk = chunk.size();
   part.bytes_device = device_block_bytes(part.words);
   return part;
 }
@@ -60,7 +62,7 @@ const PlannedMaps::Part& PlannedMaps::radiance(std::uint32_t probe, glm::dvec3 p
   part.record.r_log2 = device.record.r_log2;
   part.words = std::move(device.radiance);
   part.record.radiance_address = host_address(part.words.data());
-  part.bytes_disk = bytes_on_disk(map);
+  part.bytes_disk = chunk_of(map, SampleCoding::kFloat).size();
   part.bytes_device = device_block_bytes(part.words);
   return part;
 }

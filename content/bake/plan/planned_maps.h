@@ -8,13 +8,14 @@
 #include <vector>
 
 #include "content/bake/map_store.h"
+#include "content/pack/pack_io.h"
 #include "content/probe/device_probe.h"
 
 namespace probewalk {
 
 class PlannedMaps {
  public:
-  explicit PlannedMaps(MapStore& maps) : maps_(maps) {}
+  PlannedMaps(MapStore& maps, SampleCoding samples) : maps_(maps), samples_(samples) {}
 
   // By the probe's number and the map's side..
   struct Part {
@@ -31,6 +32,7 @@ class PlannedMaps {
  private:
   using Key = std::pair<std::uint32_t, int>;
   MapStore& maps_;
+  const SampleCoding samples_;
   std::map<Key, Part> geometry_, radiance_;
 };
 

@@ -60,7 +60,7 @@ class Planner {
         target_(target),
         progress_(progress),
         grid_(plan_grid(heads)),
-        maps_(maps),
+        maps_(maps, target.samples),
         choosing_(sample(0, counts_for(space.rooms.size(), target.effort, 8000, 0, 0))),
         sizing_(sample(1, counts_for(space.rooms.size(), target.effort, 16000, 1600, 200))),
         choice_(space, heads, triangles, choosing_.rays, grid_, candidate_side(), progress),

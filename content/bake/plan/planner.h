@@ -15,6 +15,7 @@
 #include "content/bake/placement.h"
 #include "content/bake/placement/head_space.h"
 #include "content/bake/plan/view_error.h"
+#include "content/pack/pack_io.h"
 #include "content/progress.h"
 #include "content/scene/space.h"
 
@@ -28,6 +29,7 @@ struct PlanTarget {
   int most_radiance = 1024;  // texels a side
   double effort = 1.0;       // more views are a surer promise and take longer
   int coarse_side = 128;     // of the level that finer ones come with
+  SampleCoding samples = SampleCoding::kSmaller;  // what is measured and promised about is what will be stored
   bool asked() const { return error > 0.0 || budget_bytes > 0; }
 };
 

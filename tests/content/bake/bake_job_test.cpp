@@ -3,11 +3,14 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <cmath>
 #include <fstream>
+#include <set>
 
 #include "content/error.h"
 #include "content/pack/file_io.h"
 #include "content/pack/pack_io.h"
+#include "content/pack/sample_tiles.h"
 #include "content/scene/procedural/procedural.h"
 #include "support/test_bake.h"
 
@@ -62,6 +65,40 @@ class BakeJob : public testing::Test {
 
   fs::path folder_;
 };
+
+TEST_F(BakeJob, QuantisesSamplesWithinTheirErrorAndNothingElse) {
+  BakeOptions exact = options("float"), coded = options("quantised");
+  exact.samples = SampleCoding::kFloat;
+  coded.samples = SampleCoding::kQuantised;
+  const BakeReport whole = bake_quietly(exact), report = bake_quietly(coded);
+  EXPECT_EQ(whole.quantised_levels, 0u);
+  EXPECT_GT(report.quantised_levels, 0u);
+  EXPECT_LE(report.worst_sample_error, kStraySampleError);
+  const Pack a = Pack::open(exact.pack), b = Pack::open(coded.pack);
+  const auto features = [](const Pack& pack) { return std::set(pack.manifest().features.begin(), pack.manifest().features.end()); };
+  EXPECT_FALSE(features(a).contains(kQuantisedFeature));
+  EXPECT_TRUE(features(b).contains(kQuantisedFeature));
+  double worst = 0.0;
+  for (std::size_t room = 0; room < a.manifest().rooms.size(); ++room) {
+    for (std::size_t level = 0; level < a.manifest().rooms[room].levels.size(); ++level) {
+      EXPECT_TRUE(b.manifest().rooms[room].levels[level].quantised);
+      const RoomLevel should = a.read_level(room, level), is = b.read_level(room, level);
+      ASSERT_EQ(should.probes.size(), is.probes.size());
+      for (std::size_t p = 0; p < is.probes.size(); ++p) {
+        const ProbeGeometry &x = should.probes[p].geometry, &y = is.probes[p].geometry;
+        EXPECT_EQ(x.edges_diagonal, y.edges_diagonal);
+        EXPECT_EQ(x.edges_horizontal, y.edges_horizontal);
+        EXPECT_EQ(x.normals, y.normals);
+        EXPECT_EQ(should.probes[p].radiance.rgb9e5, is.probes[p].radiance.rgb9e5);
+        for (std::size_t k = 0; k < x.w.size(); ++k) {
+          ASSERT_EQ(x.w[k] == 0.0f, y.w[k] == 0.0f);
+          if (x.w[k] > 0.0f) worst = std::max(worst, std::abs(double{y.w[k]} - double{x.w[k]}) / double{x.w[k]});
+        }
+      }
+    }
+  }
+  EXPECT_EQ(worst, report.worst_sample_error);
+}
 
 TEST_F(BakeJob, MakesAWholePackOfTwoLevels) {
   const BakeReport report = bake_quietly(options("a"));
