@@ -31,6 +31,7 @@ struct DisplayOptions {
   bool seated = false;
   bool offscreen_in_real_time = false;  // at the pace of a display, not on a fixed clock
   LocomotionOptions locomotion;
+  ViewLayout offscreen_layout = ViewLayout::kStereo;
   EyeGeometry eyes;  // window and offscreen, in the viewer's metres; a headset has its own
   DeviceOptions device;
 };

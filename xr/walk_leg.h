@@ -49,7 +49,7 @@ class WalkLeg {
   // Draws into the source's next image; the views that were drawn, and the frame's number with the renderer.
   std::vector<ViewPose> draw(const FrameTiming& timing, FrameRecord& record, std::uint64_t& drawn);
   void write(const std::vector<ViewPose>& views, VkExtent2D extent);
-  void save_pictures(const FrameTarget& target);
+  void save_pictures(const FrameTarget& target, const std::vector<ViewPose>& views);
   void note_for_overlay(const FrameRecord& record);
   // Enters a frame that has ended.
   void book(FrameRecord& record, std::uint64_t drawn);
