@@ -37,6 +37,7 @@ struct PushConstants {
   std::uint32_t view = 0;         // that a draw is for
   std::uint32_t reserved = 0;
   VkDeviceAddress list = 0;  // of edge pixels, where a pass fills or reads one (shaders/shared/edge_list.h)
+  VkDeviceAddress openings = 0;  // what first probes are chosen from (shaders/openings.glsl)
 };
 
 // Owns a pipeline and its layout.
