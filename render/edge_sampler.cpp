@@ -47,13 +47,15 @@ EdgeSampler::EdgeSampler(const Device& device, const StorageImageSet& images, co
       sample_(Pipeline::compute(
           device, &images,
           tracing_module(options.choice, spirv::k_sample_edges_comp, spirv::k_sample_edges_baseline_comp),
-          tracing_constants({options.aov ? VK_TRUE : VK_FALSE, options.interleave, options.samples}, options.choice))) {
+          tracing_constants({options.aov ? VK_TRUE : VK_FALSE, options.interleave, options.samples}, options.choice,
+                            options.shared_openings))) {
 }
 
-void EdgeSampler::record(VkCommandBuffer commands, VkDeviceAddress frame, VkExtent2D extent_px) const {
+void EdgeSampler::record(VkCommandBuffer commands, VkDeviceAddress frame, VkDeviceAddress openings,
+                         VkExtent2D extent_px) const {
   constexpr VkPipelineStageFlags2 kCompute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
   constexpr VkAccessFlags2 kRead = VK_ACCESS_2_SHADER_STORAGE_READ_BIT, kWrite = VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT;
-  const PushConstants push{.constants = frame, .list = list_.address()};
+  const PushConstants push{.constants = frame, .list = list_.address(), .openings = openings};
 
   // The last frame's rays have read the list.
   memory_barrier(commands, kCompute | VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT, 0, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,

@@ -20,6 +20,7 @@ struct EdgeSamplerOptions {
   std::uint32_t interleave = 1;  // see kInterleave in trace_stereo.glsl
   bool masked = false;           // hidden tiles get none
   bool foveated = false;         // tiles with a ray for several pixels get no more (shaders/shared/foveation.h)
+  bool shared_openings = false;  // as in TracerOptions
   TracerChoice choice;           // how rays are answered; its maps are named by the FrameConstants
 };
 
@@ -30,7 +31,8 @@ class EdgeSampler {
 
   // After the dispatch that has written the images, without a barrier between. Its own writes are left to the caller's
   // next barrier. `frame` is the device address of the FrameConstants, whose size `extent_px` is: within the options'.
-  void record(VkCommandBuffer commands, VkDeviceAddress frame, VkExtent2D extent_px) const;
+  // `openings`: of the views (StereoTracer); 0 without shared_openings.
+  void record(VkCommandBuffer commands, VkDeviceAddress frame, VkDeviceAddress openings, VkExtent2D extent_px) const;
 
  private:
   const StorageImageSet& images_;

@@ -40,6 +40,7 @@ struct PushConstants {
   std::uint32_t view = 0;         // that a draw is for
   std::uint32_t first = 0;        // of what a dispatch makes, where it makes a part
   VkDeviceAddress list = 0;  // what a pass has beside: edge pixels (shaders/shared/edge_list.h), guides (guides.h)
+  VkDeviceAddress openings = 0;  // what first probes are chosen from (shaders/openings.glsl)
 };
 
 // Owns a pipeline and its layout.

@@ -12,6 +12,7 @@ extern const std::span<const std::uint32_t> k_trace_rays_comp;
 extern const std::span<const std::uint32_t> k_trace_triangles_comp;
 extern const std::span<const std::uint32_t> k_walk_rays_comp;
 extern const std::span<const std::uint32_t> k_trace_rays_baseline_comp;
+extern const std::span<const std::uint32_t> k_find_openings_comp;
 extern const std::span<const std::uint32_t> k_fill_blocks_comp;
 extern const std::span<const std::uint32_t> k_find_edges_comp;
 extern const std::span<const std::uint32_t> k_sample_edges_comp;

@@ -47,7 +47,13 @@ StereoTracer::StereoTracer(const Device& device, const TracerOptions& options)
           tracing_module(options.setup.choice, spirv::k_trace_stereo_comp, spirv::k_trace_stereo_baseline_comp),
           tracing_constants({options.aov ? VK_TRUE : VK_FALSE, interleave_, options.foveation ? VK_TRUE : VK_FALSE,
                              options.masked ? VK_TRUE : VK_FALSE},
-                            options.setup.choice))) {
+                            options.setup.choice, options.shared_openings))) {
+  if (options.shared_openings) {
+    constexpr VkDeviceSize kPlace_bytes = 32, kCorners = 8;  // CandidatePlace of shaders/shared/tracer.h
+    openings_ = Buffer(device, kPlace_bytes * kCorners * options.views, BufferMemory::kDevice);
+    find_openings_.emplace(
+        Pipeline::compute(device, nullptr, spirv::k_find_openings_comp, tracing_constants({}, options.setup.choice)));
+  }
   if (options.foveation) {
     fill_.emplace(Pipeline::compute(device, &images_, spirv::k_fill_blocks_comp,
                                     {options.aov ? VK_TRUE : VK_FALSE, options.masked ? VK_TRUE : VK_FALSE}));
@@ -56,7 +62,7 @@ StereoTracer::StereoTracer(const Device& device, const TracerOptions& options)
     edges_ = std::make_unique<EdgeSampler>(
         device, images_,
         EdgeSamplerOptions{options.extent_px, options.views, options.aov, options.samples, interleave_, options.masked,
-                           options.foveation.has_value(), options.setup.choice});
+                           options.foveation.has_value(), options.shared_openings, options.setup.choice});
   }
   // The images stay in the general layout for good.
   run_commands(device, [&](VkCommandBuffer commands) {
@@ -79,7 +85,17 @@ void StereoTracer::record(VkCommandBuffer commands, VkDeviceAddress frame, VkExt
   barrier.dstAccessMask = VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT;
   vkCmdPipelineBarrier2(commands, &dependency);
 
-  pipeline_.bind(commands, &images_, {frame});
+  PushConstants push{.constants = frame};
+  if (find_openings_) {
+    push.openings = openings_.address();
+    find_openings_->bind(commands, nullptr, push);
+    vkCmdDispatch(commands, options_.views, 1, 1);
+    barrier.srcStageMask = barrier.dstStageMask = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
+    barrier.srcAccessMask = VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT;
+    barrier.dstAccessMask = VK_ACCESS_2_SHADER_STORAGE_READ_BIT;
+    vkCmdPipelineBarrier2(commands, &dependency);
+  }
+  pipeline_.bind(commands, &images_, push);
   const std::uint32_t columns = (extent_px.width + kTile - 1) / kTile;
   vkCmdDispatch(commands, columns, tile_rows(extent_px.height, options_.views, interleave_), options_.views);
 
@@ -91,7 +107,7 @@ void StereoTracer::record(VkCommandBuffer commands, VkDeviceAddress frame, VkExt
     fill_->bind(commands, &images_, {frame});
     vkCmdDispatch(commands, columns, (extent_px.height + kTile - 1) / kTile, options_.views);
   }
-  if (edges_) edges_->record(commands, frame, extent_px);
+  if (edges_) edges_->record(commands, frame, openings_.address(), extent_px);
 
   barrier.srcStageMask = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
   barrier.srcAccessMask = VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT;

@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 
+#include "render/buffer.h"
 #include "render/device.h"
 #include "render/edge_sampler.h"
 #include "render/foveation.h"
@@ -24,6 +25,9 @@ struct TracerOptions {
   std::optional<Foveation> foveation;  // rays for several pixels towards the rim
   bool masked = false;                 // hidden tiles have no rays: the FrameConstants name them (hidden_tiles.h)
   TracerSetup setup;                   // how rays are answered
+  // Rays of a view read what their first probe is chosen from instead of finding it each for itself: the same answers to
+  // the bit. Off because it was not measurably faster; `probewalk bench` measures it.
+  bool shared_openings = false;
 };
 
 // Distance of a miss, metres.
@@ -54,6 +58,8 @@ class StereoTracer {
   std::uint32_t interleave_;  // see kInterleave in trace_stereo.glsl
   Image radiance_, distance_, aov_;
   StorageImageSet images_;
+  Buffer openings_;  // with shared_openings
+  std::optional<Pipeline> find_openings_;
   Pipeline pipeline_;
   std::optional<Pipeline> fill_;        // with foveation
   std::unique_ptr<EdgeSampler> edges_;  // with more than one sample

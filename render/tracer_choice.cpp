@@ -10,13 +10,14 @@ namespace probewalk {
 namespace {
 
 constexpr std::size_t kFirstChoiceConstant = 4;
+constexpr std::size_t kOpeningsConstant = 16;
 
 }  // namespace
 
 void check_setup(const TracerSetup& setup) {
   if (setup.choice.needs_maps() && setup.baselines == nullptr) {
-    throw std::logic_error(fmt::format("method {} traces against baseline maps; none are on the device",
-                                       name_of(setup.choice)));
+    throw std::logic_error(
+        fmt::format("method {} traces against baseline maps; none are on the device", name_of(setup.choice)));
   }
 }
 
@@ -25,7 +26,8 @@ std::span<const std::uint32_t> tracing_module(const TracerChoice& choice, std::s
   return choice.is_baseline() ? baseline : own;
 }
 
-std::vector<std::uint32_t> tracing_constants(std::initializer_list<std::uint32_t> own, const TracerChoice& choice) {
+std::vector<std::uint32_t> tracing_constants(std::initializer_list<std::uint32_t> own, const TracerChoice& choice,
+                                             bool shared_openings) {
   std::vector<std::uint32_t> constants(own);
   if (constants.size() > kFirstChoiceConstant) throw std::logic_error("a tracing shader has four constants of its own");
   constants.resize(kFirstChoiceConstant, 0);
@@ -34,11 +36,13 @@ std::vector<std::uint32_t> tracing_constants(std::initializer_list<std::uint32_t
                           rules.hand_on, rules.last_resort}) {
     constants.push_back(static_cast<std::uint32_t>(value));
   }
-  if (!choice.is_baseline()) return constants;
-  for (const int value : {choice.method, choice.epsilon_rule, choice.reject_backfaces ? 1 : 0,
-                          choice.backward_trace ? 1 : 0}) {
+  // The product's shaders have not got these, and pass them over.
+  for (const int value :
+       {choice.method, choice.epsilon_rule, choice.reject_backfaces ? 1 : 0, choice.backward_trace ? 1 : 0}) {
     constants.push_back(static_cast<std::uint32_t>(value));
   }
+  constants.resize(kOpeningsConstant, 0);
+  constants.push_back(shared_openings ? 1 : 0);
   return constants;
 }
 

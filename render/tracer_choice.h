@@ -28,8 +28,10 @@ std::span<const std::uint32_t> tracing_module(const TracerChoice& choice, std::s
                                               std::span<const std::uint32_t> baseline);
 
 // Specialisation constants of a tracing shader: `own` from 0 on, at most four of them, then the choice's from 4 on, as
-// shaders/shared/tracer_glsl.h numbers them.
-std::vector<std::uint32_t> tracing_constants(std::initializer_list<std::uint32_t> own, const TracerChoice& choice);
+// shaders/shared/tracer_glsl.h numbers them, then whether views' rays share what their first probes are chosen from
+// (shaders/openings.glsl).
+std::vector<std::uint32_t> tracing_constants(std::initializer_list<std::uint32_t> own, const TracerChoice& choice,
+                                             bool shared_openings = false);
 
 // Address for BatchConstants and FrameConstants; 0 = none.
 glm::uvec2 baseline_address(const TracerSetup& setup);

@@ -25,6 +25,10 @@ ViewFov symmetric_fov(double vertical_rad, int width_px, int height_px) {
 }
 
 void share_choice(std::span<ViewConstants> views) {
+  if (views.size() == 4) {
+    share_choice(views.first(2));
+    share_choice(views.last(2));
+  }
   if (views.size() != 2) return;
   const glm::vec3 across = (views[1].origin_hi_m - views[0].origin_hi_m) + (views[1].origin_lo_m - views[0].origin_lo_m);
   for (int eye = 0; eye < 2; ++eye) {

@@ -20,8 +20,8 @@ ViewConstants view_constants(glm::dvec3 position_m, glm::dquat orientation, cons
 // Symmetric field of view with the given vertical angle and square pixels.
 ViewFov symmetric_fov(double vertical_rad, int width_px, int height_px);
 
-// Lets both eyes of a head choose probes as its middle would (ViewConstants::choice_shift_m). Other numbers of views stay
-// as they are.
+// Lets both eyes of a head choose probes as its middle would (ViewConstants::choice_shift_m): two views, or two pairs of
+// left and right (wide and inset). Other numbers of views stay as they are.
 void share_choice(std::span<ViewConstants> views);
 
 }  // namespace probewalk

@@ -3,6 +3,7 @@
 #include "shared/edge_list.h"
 #include "shared/tracer_glsl.h"
 #include "shared/view_ray.h"
+#include "openings.glsl"
 
 layout(local_size_x = kEdgeGroup) in;
 
@@ -25,6 +26,7 @@ layout(push_constant) uniform Push {
   uvec2 frame_address;
   uvec2 unused;
   uvec2 list_address;
+  uvec2 openings_address;
 };
 
 // Where the extra rays leave their pixel, from its centre. Least mean square error of the area that straight edges of
@@ -35,11 +37,13 @@ const float kSecondWeight = 0.4;
 const vec2 kThree[3] = vec2[](vec2(0.281, 0.312), vec2(-0.411, 0.087), vec2(0.130, -0.399));
 
 // Adds the ray through a point of the pixel to `shown`, weighted, and its costs to `counts` (lookups, tries, reads).
-void add_ray(FrameConstants constants, ViewConstants view, vec2 point_px, float weight, inout vec3 shown,
+void add_ray(FrameConstants constants, int view_index, vec2 point_px, float weight, inout vec3 shown,
              inout uvec3 counts) {
+  ViewConstants view = constants.view[view_index];
   vec3 direction = view_ray_through(view, point_px, constants.size_px);
   RayAnswer answer = pipeline_trace(constants.baseline_address, constants.grid, constants.trace, view.origin_hi_m,
-                                    view.origin_lo_m, direction, choice_shift(view));
+                                    view.origin_lo_m, direction, choice_shift(view),
+                                    opening_probe(openings_address, view_index, direction));
   uint reads;
   vec3 radiance = pipeline_radiance(constants.grid, constants.trace, answer, view.origin_hi_m, view.origin_lo_m,
                                     direction, view.pixel_angle_rad, reads);
@@ -58,7 +62,6 @@ void main() {
     uint packed = list.pixel[k];
     const uint mask = (1u << kEdgeSideBits) - 1u;
     ivec3 texel = ivec3(packed & mask, (packed >> kEdgeSideBits) & mask, packed >> (2 * kEdgeSideBits));
-    ViewConstants view = constants.view[texel.z];
     vec2 centre_px = vec2(texel.xy) + 0.5;
     // What is shown is averaged, not radiance: light adds up on the display, after the tone curve. A bright sky beside
     // a dark frame would else outshine it with a hundredth of the pixel, and the edge would stay a staircase.
@@ -67,7 +70,7 @@ void main() {
     uvec3 counts = uvec3(0u);
     for (int extra = 0; extra < kSamples - 1; ++extra) {
       vec2 offset = kSamples == 2 ? kSecond : kThree[extra];
-      add_ray(constants, view, centre_px + offset, kSamples == 2 ? kSecondWeight : 0.25, shown, counts);
+      add_ray(constants, texel.z, centre_px + offset, kSamples == 2 ? kSecondWeight : 0.25, shown, counts);
     }
     // The radiance that is shown like this: the resolve applies the curve again.
     vec3 radiance = tone_curve_inverse(shown) / exposure;

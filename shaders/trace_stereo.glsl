@@ -2,6 +2,7 @@
 #include "shared/foveation.h"
 #include "shared/tracer_glsl.h"
 #include "shared/view_ray.h"
+#include "openings.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -21,7 +22,11 @@ layout(binding = 1, r32f) writeonly uniform image2DArray distance_image;
 layout(binding = 2, rgba32ui) writeonly uniform uimage2DArray aov_image;
 
 layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer Frame { FrameConstants constants; };
-layout(push_constant) uniform Push { uvec2 frame_address; };
+layout(push_constant) uniform Push {
+  uvec2 frame_address;
+  uvec2 unused[2];
+  uvec2 openings_address;
+};
 
 #include "hidden_tiles.glsl"
 
@@ -56,7 +61,8 @@ void main() {
   TraceConstants dials = frame.constants.trace;
   vec3 direction = view_ray_through(view, vec2(pixel) + 0.5 * float(rate), size_px);
   RayAnswer answer = pipeline_trace(frame.constants.baseline_address, grid, dials, view.origin_hi_m, view.origin_lo_m,
-                                    direction, choice_shift(view));
+                                    direction, choice_shift(view),
+                                    opening_probe(openings_address, view_index, direction));
   uint reads;
   vec3 radiance = pipeline_radiance(grid, dials, answer, view.origin_hi_m, view.origin_lo_m, direction,
                                     view.pixel_angle_rad * float(rate), reads);

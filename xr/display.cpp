@@ -94,6 +94,7 @@ Display open_offscreen(const DisplayOptions& options, const Pose& start, bool in
   offscreen.in_real_time = in_real_time;
   offscreen.eye_size = eye_size_or_default(options);
   offscreen.eyes = options.eyes;
+  offscreen.layout = options.offscreen_layout;
   offscreen.eyes.ipd_m *= options.locomotion.world_scale;
   Display display;
   display.device = std::make_unique<Device>(DeviceHooks{}, options.device);

@@ -39,6 +39,7 @@ struct DisplayOptions {
   std::optional<double> refresh_hz;  // headset; empty = as it is
   bool offscreen_in_real_time = false;  // at the pace of a display, not on a fixed clock
   LocomotionOptions locomotion;
+  ViewLayout offscreen_layout = ViewLayout::kStereo;
   EyeGeometry eyes;  // window and offscreen, in the viewer's metres; a headset has its own
   DeviceOptions device;
 };

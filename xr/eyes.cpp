@@ -1,11 +1,15 @@
 #include "xr/eyes.h"
 
+#include <cmath>
+#include <cstddef>
+
 #include "render/view.h"
 #include "xr/path.h"
 
 namespace probewalk {
 
-std::vector<ViewPose> eyes_of(const Pose& head_pose, const EyeGeometry& eyes, VkExtent2D extent, ViewPose* head) {
+std::vector<ViewPose> eyes_of(const Pose& head_pose, const EyeGeometry& eyes, VkExtent2D extent, ViewPose* head,
+                              ViewLayout layout) {
   const ViewFov fov =
       symmetric_fov(eyes.vertical_fov_rad, static_cast<int>(extent.width), static_cast<int>(extent.height));
   ViewPose centre;
@@ -20,6 +24,16 @@ std::vector<ViewPose> eyes_of(const Pose& head_pose, const EyeGeometry& eyes, Vk
   std::vector<ViewPose> views{centre, centre};
   views[0].position_m -= half_m;
   views[1].position_m += half_m;
+  if (layout == ViewLayout::kStereoWithInsets) {
+    const auto narrowed = [](float angle_rad) { return std::atan(std::tan(angle_rad) * kInsetShare); };
+    for (std::size_t eye = 0; eye < 2; ++eye) {
+      ViewPose inset = views[eye];
+      for (float* side : {&inset.fov_left_rad, &inset.fov_right_rad, &inset.fov_up_rad, &inset.fov_down_rad}) {
+        *side = narrowed(*side);
+      }
+      views.push_back(inset);
+    }
+  }
   return views;
 }
 

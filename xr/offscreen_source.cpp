@@ -12,12 +12,13 @@ namespace probewalk {
 OffscreenSource::OffscreenSource(const Device& device, const Pose& head, const OffscreenOptions& options)
     : head_(head),
       options_(options),
-      images_(device, options.eye_size, 2),
+      images_(device, options.eye_size, view_count_of(options.layout)),
       pacer_(options.period_ns),
       start_ns_(now_ns()) {}
 
 std::string OffscreenSource::description() const {
-  return fmt::format("no display, {}x{} an eye, {} of {:.3g} Hz", options_.eye_size.width, options_.eye_size.height,
+  return fmt::format("no display, {}x{} {}, {} of {:.3g} Hz", options_.eye_size.width, options_.eye_size.height,
+                     options_.layout == ViewLayout::kStereo ? "an eye" : "a view, insets in both eyes",
                      options_.in_real_time ? "at the pace" : "a fixed clock",
                      1e9 / static_cast<double>(options_.period_ns));
 }
@@ -37,7 +38,7 @@ FrameTiming OffscreenSource::wait() {
 }
 
 std::vector<ViewPose> OffscreenSource::locate(const FrameTiming&, ViewPose* head) {
-  return eyes_of(head_, options_.eyes, options_.eye_size, head);
+  return eyes_of(head_, options_.eyes, options_.eye_size, head, options_.layout);
 }
 
 }  // namespace probewalk

@@ -16,6 +16,7 @@ struct OffscreenOptions {
   std::int64_t period_ns = kDefaultPeriod_ns;
   bool in_real_time = false;  // frames begin when a display of this period would let them
   EyeGeometry eyes;
+  ViewLayout layout = ViewLayout::kStereo;
 };
 
 // Frame i (from 0) has the display time start + i * period, however long frames take: it has no deadlines, and wait
@@ -32,7 +33,7 @@ class OffscreenSource final : public FrameSource {
   void begin(FrameTiming&) override {}
   std::vector<ViewPose> locate(const FrameTiming& timing, ViewPose* head) override;
   VkExtent2D view_extent() const override { return options_.eye_size; }
-  std::uint32_t view_count() const override { return 2; }
+  std::uint32_t view_count() const override { return view_count_of(options_.layout); }
   VkFormat color_format() const override { return EyeImages::kFormat; }
   FrameTarget acquire(VkExtent2D drawn) override { return images_.next(drawn); }
   void end(const FrameTiming&, const std::vector<ViewPose>&) override {}

@@ -215,7 +215,7 @@ std::vector<ViewPose> WalkLeg::draw(const FrameTiming& timing, FrameRecord& reco
   record.eye_scale = eyes_.scale();
   eyes_.drawn(drawn);
   books_.head = head;
-  save_pictures(target);
+  save_pictures(target, views);
   if (display_.mirror && !spectator_) display_.mirror->offer(target, record);
   if (books_.recorder) {
     books_.recorder->add({static_cast<double>(timing.predicted_display_ns - *books_.first_display_ns) * 1e-9,
@@ -247,9 +247,9 @@ void WalkLeg::write(const std::vector<ViewPose>& views, VkExtent2D extent) {
   renderer_.write(constants, settings_);
 }
 
-void WalkLeg::save_pictures(const FrameTarget& target) {
+void WalkLeg::save_pictures(const FrameTarget& target, const std::vector<ViewPose>& views) {
   if (options_.pictures && books_.frame % options_.picture_every == 0) {
-    books_.pictures += save_eye_pictures(*display_.device, target, *options_.pictures, books_.frame);
+    books_.pictures += save_eye_pictures(*display_.device, target, *options_.pictures, books_.frame, views);
   }
   if (source_.take_screenshot_request() || std::exchange(screenshot_, false)) {
     progress_.note(fmt::format("wrote {}", save_screenshot(*display_.device, target).string()));

@@ -51,7 +51,7 @@ class WalkLeg {
   void write(const std::vector<ViewPose>& views, VkExtent2D extent);
   // None where a path is replayed: it is shown as it was recorded. Valid until the source's next wait.
   Guides guides() const;
-  void save_pictures(const FrameTarget& target);
+  void save_pictures(const FrameTarget& target, const std::vector<ViewPose>& views);
   void note_for_overlay(const FrameRecord& record);
   // Enters a frame that has ended.
   void book(FrameRecord& record, std::uint64_t drawn);

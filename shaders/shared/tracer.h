@@ -70,9 +70,11 @@ PW_FUNCTION int start_test(ProbeRecord probe, real3 x, real margin, PW_INOUT(pw_
 #ifdef PW_BASELINES
 #include "baseline_walks.h"
 #define PW_WALK_PARAMETER BaselineContext context,
+#define PW_WALK_ARGUMENT context,
 #define PW_WALK(probe, id, x, d, t, level, failures) walk_baseline(context, probe, id, x, d, t, failures)
 #else
 #define PW_WALK_PARAMETER
+#define PW_WALK_ARGUMENT
 #define PW_WALK(probe, id, x, d, t, level, failures) walk_probe(probe, x, d, t, level)
 #endif
 
@@ -89,14 +91,63 @@ struct CellCandidates {
   real score[PW_CANDIDATES];  // -PW_NEVER: not (or no more) to be asked
 };
 
-// How promising a probe is for a ray of unit direction d, `away` from it: what is first of a cell has the highest score.
-PW_FUNCTION real candidate_score(GridConstants grid, TraceConstants dials, int first, real3 away, real3 d) {
-  real distance = sqrt(away.x * away.x + away.y * away.y + away.z * away.z) + real(1e-6);
-  real cosine = (away.x * d.x + away.y * d.y + away.z * d.z) / distance;
-  if (first == kFirstNearest) return -distance * real(grid.inverse_diagonal);
+// The grid cell that holds a point (clamped to the grid): its lowest corner, and where in it the point lies, 0 to 1.
+struct CellOfPoint {
+  pw_ivec3 corner;
+  real3 part;
+};
+
+PW_FUNCTION CellOfPoint cell_of_point(GridConstants grid, real3 q) {
+  CellOfPoint at;
+  real3 cell = (q - real3(grid.origin_m)) / real3(grid.spacing_m);
+  int cx = min(max(int(floor(min(max(cell.x, real(-1)), real(65536)))), 0), max(0, grid.dims.x - 2));
+  int cy = min(max(int(floor(min(max(cell.y, real(-1)), real(65536)))), 0), max(0, grid.dims.y - 2));
+  int cz = min(max(int(floor(min(max(cell.z, real(-1)), real(65536)))), 0), max(0, grid.dims.z - 2));
+  at.corner = pw_ivec3(cx, cy, cz);
+  at.part = real3(min(max(cell.x - real(cx), real(0)), real(1)), min(max(cell.y - real(cy), real(0)), real(1)),
+                  min(max(cell.z - real(cz), real(0)), real(1)));
+  return at;
+}
+
+// What a corner's score is made of besides the ray's direction: the same for all rays that choose from one point.
+struct CandidatePlace {
+  real3 away;           // from the corner's probe to that point
+  real distance;
+  real less_distance;   // of the score: for the distance
+  real less_border;     // of the score: for a corner beyond the cell's middle
+  int probe;
+  int resident;         // 0: not to be asked
+};
+
+PW_FUNCTION CandidatePlace candidate_place(GridConstants grid, TraceConstants dials, int first, CellOfPoint at, real3 q,
+                                           int k) {
+  CandidatePlace place;
+  int x = min(at.corner.x + (k & 1), grid.dims.x - 1);
+  int y = min(at.corner.y + ((k >> 1) & 1), grid.dims.y - 1);
+  int z = min(at.corner.z + (k >> 2), grid.dims.z - 1);
+  place.probe = int(pw_word(grid.table_address, (z * grid.dims.y + y) * grid.dims.x + x));
+  ProbeRecord probe = pw_probe(grid, place.probe);
+  place.resident = probe.n_log2 == 0u ? 0 : 1;
+  place.away = q - real3(probe.position_hi_m);
+  place.distance = sqrt(place.away.x * place.away.x + place.away.y * place.away.y + place.away.z * place.away.z) + real(1e-6);
+  real weight = first == kFirstNearest ? real(1) : real(dials.distance_weight);
+  place.less_distance = weight * place.distance * real(grid.inverse_diagonal);
+  real off_x = (k & 1) != 0 ? real(1) - at.part.x : at.part.x, off_y = (k & 2) != 0 ? real(1) - at.part.y : at.part.y;
+  real off_z = (k & 4) != 0 ? real(1) - at.part.z : at.part.z;
+  real off = max(off_x, max(off_y, off_z));
+  place.less_border = max(off - PW_FADE_FROM, real(0)) * PW_FADE_PER_CELL;
+  return place;
+}
+
+// How promising a probe is for a ray of unit direction d: what is first of a cell has the highest score. Probes that are
+// not resident have none.
+PW_FUNCTION real candidate_score(CandidatePlace place, int first, real3 d) {
+  if (place.resident == 0) return -PW_NEVER;
+  if (first == kFirstNearest) return -place.less_distance;
+  real cosine = (place.away.x * d.x + place.away.y * d.y + place.away.z * d.z) / place.distance;
   if (first == kFirstSigned) return cosine;
   if (first == kFirstUnsigned) return abs(cosine);
-  return cosine - real(dials.distance_weight) * distance * real(grid.inverse_diagonal);
+  return cosine - place.less_distance - place.less_border;
 }
 
 // When a corner is asked if `first` is asked first, by a fixed order.
@@ -136,27 +187,11 @@ PW_FUNCTION void strike_candidate(PW_INOUT(CellCandidates) cell, int id) {
 PW_FUNCTION CellCandidates cell_candidates(GridConstants grid, TraceConstants dials, SelectionRules rules, real3 q,
                                            real3 d) {
   CellCandidates list;
-  real3 cell = (q - real3(grid.origin_m)) / real3(grid.spacing_m);
-  int cx = min(max(int(floor(min(max(cell.x, real(-1)), real(65536)))), 0), max(0, grid.dims.x - 2));
-  int cy = min(max(int(floor(min(max(cell.y, real(-1)), real(65536)))), 0), max(0, grid.dims.y - 2));
-  int cz = min(max(int(floor(min(max(cell.z, real(-1)), real(65536)))), 0), max(0, grid.dims.z - 2));
-  real3 part = real3(min(max(cell.x - real(cx), real(0)), real(1)), min(max(cell.y - real(cy), real(0)), real(1)),
-                     min(max(cell.z - real(cz), real(0)), real(1)));
+  CellOfPoint at = cell_of_point(grid, q);
   PW_UNROLL for (int k = 0; k < PW_CANDIDATES; ++k) {
-    int x = min(cx + (k & 1), grid.dims.x - 1);
-    int y = min(cy + ((k >> 1) & 1), grid.dims.y - 1);
-    int z = min(cz + (k >> 2), grid.dims.z - 1);
-    int id = int(pw_word(grid.table_address, (z * grid.dims.y + y) * grid.dims.x + x));
-    ProbeRecord probe = pw_probe(grid, id);
-    real score = candidate_score(grid, dials, rules.first, q - real3(probe.position_hi_m), d);
-    if (rules.first == kFirstSignedLessDistance) {
-      real off_x = (k & 1) != 0 ? real(1) - part.x : part.x, off_y = (k & 2) != 0 ? real(1) - part.y : part.y;
-      real off_z = (k & 4) != 0 ? real(1) - part.z : part.z;
-      real off = max(off_x, max(off_y, off_z));
-      score = score - max(off - PW_FADE_FROM, real(0)) * PW_FADE_PER_CELL;
-    }
-    list.probe[k] = id;
-    list.score[k] = probe.n_log2 == 0u ? -PW_NEVER : score;
+    CandidatePlace place = candidate_place(grid, dials, rules.first, at, q, k);
+    list.probe[k] = place.probe;
+    list.score[k] = candidate_score(place, rules.first, d);
   }
   if (rules.order != kOrderSorted) {
     int first = best_candidate(list);
@@ -170,9 +205,10 @@ PW_FUNCTION CellCandidates cell_candidates(GridConstants grid, TraceConstants di
 // Traces a ray from origin_hi + origin_lo (metres, scene coordinates; hi is the float nearest, lo the rest) along the
 // unit direction d. Probes are tried one after the other, each from where the last one's knowledge ended; candidates come
 // from the cell of the current point, then from the cells one and two spacings ahead, then from the origin's; the start
-// test skips those that cannot see the current point (design: fewer-tries, 1).
+// test skips those that cannot see the current point (design: fewer-tries, 1). `opening`: the probe that it asks first, as
+// the rules would choose it; -1: they are to choose.
 PW_FUNCTION RayAnswer trace_ray(PW_WALK_PARAMETER GridConstants grid, TraceConstants dials, SelectionRules rules,
-                                real3 origin_hi, real3 origin_lo, real3 d, int start_level) {
+                                real3 origin_hi, real3 origin_lo, real3 d, int start_level, int opening) {
   RayAnswer answer;
   answer.cls = kClassUnknown;
   answer.t = real(0);
@@ -194,7 +230,7 @@ PW_FUNCTION RayAnswer trace_ray(PW_WALK_PARAMETER GridConstants grid, TraceConst
   int stage = first_stage;
   // Every turn walks once. Stages are gone through within it, so that rays that are traced side by side walk together.
   while (int(answer.tries) < max_tries) {
-    int chosen = -1;
+    int chosen = answer.tries == 0u ? opening : -1;
     for (; chosen < 0 && stage < 4; stage += chosen < 0 ? 1 : 0) {
       real t_cell = stage == 3 ? real(0) : t + real(stage) * ahead;
       CellCandidates cell = cell_candidates(grid, dials, rules, chosen_from + d * t_cell, d);
@@ -268,6 +304,11 @@ PW_FUNCTION RayAnswer trace_ray(PW_WALK_PARAMETER GridConstants grid, TraceConst
   return answer;
 }
 
+PW_FUNCTION RayAnswer trace_ray(PW_WALK_PARAMETER GridConstants grid, TraceConstants dials, SelectionRules rules,
+                                real3 origin_hi, real3 origin_lo, real3 d, int start_level) {
+  return trace_ray(PW_WALK_ARGUMENT grid, dials, rules, origin_hi, origin_lo, d, start_level, -1);
+}
+
 #ifndef PW_BASELINES
 // The same by the product's own rules.
 PW_FUNCTION RayAnswer trace_ray(GridConstants grid, TraceConstants dials, real3 origin_hi, real3 origin_lo, real3 d,
@@ -278,3 +319,4 @@ PW_FUNCTION RayAnswer trace_ray(GridConstants grid, TraceConstants dials, real3 
 
 #undef PW_WALK
 #undef PW_WALK_PARAMETER
+#undef PW_WALK_ARGUMENT

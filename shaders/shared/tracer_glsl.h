@@ -62,7 +62,7 @@ SelectionRules pipeline_rules(vec3 choice_shift_m) {
   return rules;
 }
 
-// A ray's answer and its radiance as the pipeline traces. baseline_address: of BaselineConstants.
+// A ray's answer and its radiance as the pipeline traces. baseline_address: of BaselineConstants. opening: see trace_ray.
 #ifdef PW_BASELINES
 layout(constant_id = 12) const int kBaselineMethod = kMethodEnvironment;
 layout(constant_id = 13) const int kBaselineEpsilonRule = kEpsilonFixed;
@@ -70,7 +70,7 @@ layout(constant_id = 14) const int kBaselineRejectBackfaces = 0;
 layout(constant_id = 15) const int kBaselineBackwardTrace = 0;
 
 RayAnswer pipeline_trace(uvec2 baseline_address, GridConstants grid, TraceConstants dials, vec3 origin_hi,
-                         vec3 origin_lo, vec3 direction, vec3 choice_shift_m) {
+                         vec3 origin_lo, vec3 direction, vec3 choice_shift_m, int opening) {
   BaselineContext context;
   context.method = kBaselineMethod;
   context.epsilon_rule = kBaselineEpsilonRule;
@@ -78,7 +78,8 @@ RayAnswer pipeline_trace(uvec2 baseline_address, GridConstants grid, TraceConsta
   context.backward_trace = kBaselineBackwardTrace;
   // An environment map needs no constants, and may be given none.
   if (kBaselineMethod != kMethodEnvironment) context.constants = PwBaselineDials(baseline_address).v;
-  return trace_ray(context, grid, dials, pipeline_rules(choice_shift_m), origin_hi, origin_lo, direction, kPipelineStartLevel);
+  return trace_ray(context, grid, dials, pipeline_rules(choice_shift_m), origin_hi, origin_lo, direction, kPipelineStartLevel,
+                   opening);
 }
 
 vec3 pipeline_radiance(GridConstants grid, TraceConstants dials, RayAnswer answer, vec3 origin_hi, vec3 origin_lo,
@@ -87,8 +88,9 @@ vec3 pipeline_radiance(GridConstants grid, TraceConstants dials, RayAnswer answe
 }
 #else
 RayAnswer pipeline_trace(uvec2 baseline_address, GridConstants grid, TraceConstants dials, vec3 origin_hi,
-                         vec3 origin_lo, vec3 direction, vec3 choice_shift_m) {
-  return trace_ray(grid, dials, pipeline_rules(choice_shift_m), origin_hi, origin_lo, direction, kPipelineStartLevel);
+                         vec3 origin_lo, vec3 direction, vec3 choice_shift_m, int opening) {
+  return trace_ray(grid, dials, pipeline_rules(choice_shift_m), origin_hi, origin_lo, direction, kPipelineStartLevel,
+                   opening);
 }
 
 vec3 pipeline_radiance(GridConstants grid, TraceConstants dials, RayAnswer answer, vec3 origin_hi, vec3 origin_lo,

@@ -109,6 +109,30 @@ TEST_F(FrameRendererTest, TracesEveryPixelOfEveryViewAsTheCppTracer) {
   }
 }
 
+// From within the room, from outside the grid, and at edges with more rays.
+TEST_F(FrameRendererTest, SharedOpeningsChangeNoBit) {
+  for (const std::uint32_t samples : {1u, 4u}) {
+    for (const glm::dvec3 head_m : {glm::dvec3(0.3, 1.5, 0.9), glm::dvec3(40.0, -7.0, 3.0)}) {
+      std::vector<std::vector<std::vector<float>>> distances;
+      std::vector<std::vector<std::vector<glm::uvec4>>> aov;
+      std::vector<std::vector<ImageRgb8>> pictures;
+      for (const bool shared : {false, true}) {
+        FrameRendererOptions dials = options(2);
+        dials.tracer.samples = samples;
+        dials.tracer.shared_openings = shared;
+        FrameRenderer renderer(device, store, dials);
+        const Image image = make_target(2);
+        pictures.push_back(draw(renderer, image, views_at(head_m, 2)));
+        distances.push_back(read_floats(device, renderer.tracer().distance()));
+        aov.push_back(read_uints(device, renderer.tracer().aov()));
+      }
+      EXPECT_EQ(distances[0], distances[1]);
+      EXPECT_EQ(aov[0], aov[1]);
+      for (int eye = 0; eye < 2; ++eye) EXPECT_EQ(pictures[0][eye].rgb, pictures[1][eye].rgb);
+    }
+  }
+}
+
 TEST_F(FrameRendererTest, SamePoseGivesTheSamePicture) {
   FrameRenderer renderer(device, store, options(2, false));
   const Image image = make_target(2);

@@ -150,6 +150,32 @@ TEST(Bench, TheCsvSaysTheSame) {
   }
 }
 
+TEST(Bench, TellsWhatTheSecondEyeCosts) {
+  const Json rows = Json::parse(read_text(results().out / "eyes.json"));
+  ASSERT_EQ(rows.size(), 2u);
+  for (const Json& row : rows) {
+    EXPECT_EQ(row["scene"], "room");
+    EXPECT_EQ(row["heads"], kViews);
+    for (const char* key : {"first_ns_per_ray", "time_ratio", "first_lookups_mean", "second_lookups_mean"}) {
+      EXPECT_GT(row[key].get<double>(), 0.0) << key;
+    }
+    for (const char* key : {"first_wrong_surface_fraction", "second_wrong_surface_fraction"}) {
+      EXPECT_LT(row[key].get<double>(), 0.05) << key;
+    }
+    EXPECT_TRUE(row["second_over_first"].is_number());
+    // What is shared is found by the same sums.
+    EXPECT_EQ(row["identical_fraction"], 1.0);
+    EXPECT_EQ(row["class_changes"], 0);
+  }
+  EXPECT_EQ(rows[0]["settings"], "default");
+  EXPECT_EQ(rows[0]["time_ratio"], 1.0);
+  EXPECT_EQ(rows[0]["second_lookups_mean"], rows[1]["second_lookups_mean"]);
+  const auto lines = parse_csv(read_text(results().out / "eyes.csv"));
+  ASSERT_EQ(lines.size(), 3u);
+  EXPECT_EQ(lines[0].size(), rows[0].size());
+  EXPECT_EQ(lines[1][1], "default");
+}
+
 TEST(Bench, OneRowIsTheProductAsItShips) {
   std::size_t count = 0;
   for (const Json& row : results().rows) count += row["settings"] == "default";

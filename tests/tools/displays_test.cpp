@@ -319,6 +319,44 @@ TEST(Displays, AutoGoesOffscreenWhereNothingAnswersAndSaysWhy) {
   EXPECT_EQ(run_script(folder, nothing + "\"$probewalk\" walk \"$pack\" --display window").exit_code, 4);
 }
 
+TEST(Displays, QuadViewsShowEachEyeItsInsetInItsPlace) {
+  const fs::path folder = fresh_folder("displays-quad");
+  std::ofstream(folder / "pose.jsonl")
+      << R"({"t_s":0,"position_m":[-1,1.55,1.2],"orientation_xyzw":[0,-0.2,0,0.9797958971132712]})" << "\n";
+  const std::string walk =
+      "\"$probewalk\" walk \"$pack\" --display offscreen --path pose.jsonl --frames 3 --settle --validate --save-frames ";
+  const RunResult run = run_script(folder, walk + "quad --views quad --eye-size 96x64 && " + walk + "wide --eye-size 96x64 && " +
+                                               walk + "dense --eye-size 288x192");
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  for (const std::string eye : {"left", "right"}) {
+    const std::string name = "frame-000002-" + eye;
+    // A wide view is what an eye without an inset sees.
+    const ImageRgb8 wide = read_png(folder / "quad" / (name + ".png"));
+    EXPECT_EQ(wide.rgb, read_png(folder / "wide" / (name + ".png")).rgb);
+    const ImageRgb8 inset = read_png(folder / "quad" / (name + "-inset.png"));
+    EXPECT_EQ(inset.width_px, 96);
+    EXPECT_EQ(inset.height_px, 64);
+    // With the inset in place the middle is what an eye of three times the pixels sees there; around it that blurred.
+    const ImageRgb8 shown = read_png(folder / "quad" / (name + "-shown.png"));
+    const ImageRgb8 dense = read_png(folder / "dense" / (name + ".png"));
+    ASSERT_EQ(shown.rgb.size(), dense.rgb.size());
+    double off[2] = {0.0, 0.0}, count[2] = {0.0, 0.0};
+    for (int y = 0; y < shown.height_px; ++y) {
+      for (int x = 0; x < shown.width_px; ++x) {
+        const bool is_middle = x >= 96 && x < 192 && y >= 64 && y < 128;
+        for (int c = 0; c < 3; ++c) {
+          const std::size_t at = 3 * (static_cast<std::size_t>(y) * 288 + x) + c;
+          off[is_middle] += std::abs(shown.rgb[at] - dense.rgb[at]);
+          count[is_middle] += 1.0;
+        }
+      }
+    }
+    EXPECT_LT(off[1] / count[1], 0.5);
+    EXPECT_LT(off[0] / count[0], 6.0);
+  }
+  EXPECT_EQ(run_script(folder, "\"$probewalk\" walk \"$pack\" --display window --views quad").exit_code, 2);
+}
+
 TEST(Displays, WrongWalkOptionsAreRefusedInOneLine) {
   const fs::path folder = fresh_folder("displays-options");
   const auto refused = [&](const std::string& options) {

@@ -116,6 +116,14 @@ void print_table(const BenchSummary& summary) {
                bench::number_text(row.flip_mean, 4));
   }
   for (const bench::SceneReport& scene : summary.scenes) {
+    for (const bench::EyesRow& row : scene.eyes) {
+      fmt::print("{}: two eyes, {}: second / first {:.2f} ± {:.2f} in time, {:.1f} / {:.1f} look-ups, holes {} / {}; both "
+                 "{:.2f} ± {:.2f} of the time without sharing, {} identical\n",
+                 row.scene, row.settings, row.second_over_first, row.second_over_first_spread / 2.0,
+                 row.second.lookups_mean, row.first.lookups_mean, bench::share_text(row.second.hole_fraction),
+                 bench::share_text(row.first.hole_fraction), row.time_ratio, row.time_ratio_spread / 2.0,
+                 bench::share_text(row.identity.identical_fraction));
+    }
     for (const bench::Goal& goal : bench::goals_of(scene)) {
       const char* verdict = goal.verdict == bench::Verdict::kReached ? "reached" :
                             goal.verdict == bench::Verdict::kNotReached ? "not reached" : "not measured";
@@ -171,7 +179,7 @@ void add_bench_command(CLI::App& app, CommonOptions& common) {
   CLI::App* command = app.add_subcommand("bench", "Speed against error: every method and setting over the same views");
   command->footer(
       "DIR gets index.html (plots, tables, the worst views), results.json and results.csv, a row for each method with each\n"
-      "of its settings in each scene. --scene names what the pack was baked from: without it there is nothing to measure\n"
+      "of its settings in each scene, and eyes.json and eyes.csv: what the second of two eyes costs over the first. --scene names what the pack was baked from: without it there is nothing to measure\n"
       "errors against, and the methods that need maps of the scene (all but oat, oat-flat and environment) are left out.\n"
       "Those maps are kept in --cache from one run to the next. With --triangles and --figures alone no pack is needed.\n\n"
       "Times are the device's own, of all methods side by side in one run: compare rows of one run, not of two. The product\n"

@@ -123,6 +123,10 @@ void run_walk(WalkArguments arguments, const CommonOptions& common) {
   walk_options.loader_threads = common.threads > 0 ? static_cast<unsigned>(common.threads) : 2;
   walk_options.display.device.device = common.device;
   if (arguments.mirror_option->count() > 0) walk_options.display.window_eyes = arguments.mirror;
+  if (walk_options.display.offscreen_layout != ViewLayout::kStereo &&
+      walk_options.display.choice != DisplayChoice::kOffscreen) {
+    throw BadUsage("--views quad needs --display offscreen: headset and window have views of their own");
+  }
   if (arguments.mirror == ShownEyes::kSpectator && walk_options.display.choice == DisplayChoice::kWindow) {
     throw BadUsage("--mirror spectator shows others what a wearer sees; it is for headsets");
   }
@@ -216,6 +220,15 @@ void add_walk_command(CLI::App& app, CommonOptions& common) {
       ->add_option("--display", walk_options.display.choice,
                    "auto (headset if a runtime answers, else a window, else offscreen), headset, window, offscreen")
       ->transform(CLI::CheckedTransformer(displays))
+      ->option_text("NAME");
+  const std::map<std::string, ViewLayout> layouts{{"stereo", ViewLayout::kStereo},
+                                                  {"quad", ViewLayout::kStereoWithInsets}};
+  command
+      ->add_option("--views", walk_options.display.offscreen_layout,
+                   "Offscreen: stereo, or quad, as headsets with foveated insets have them: each eye wide and, in the "
+                   "middle third of that both ways, once more with as many pixels (default: stereo). --save-frames then "
+                   "also writes what an eye is shown, the inset in its place. A headset has views of its own")
+      ->transform(CLI::CheckedTransformer(layouts))
       ->option_text("NAME");
   command->add_option("--path", arguments->path, "Replay this path: JSON lines, as --record writes them");
   command->add_option("--record", arguments->record, "Write the path walked, with the views of both eyes");

@@ -45,6 +45,12 @@ void write_bench_files(const BenchSummary& summary) {
   };
   write("results.json", rows_json(rows));
   write("results.csv", rows_csv(rows));
+  std::vector<EyesRow> eyes;
+  for (const SceneReport& scene : summary.scenes) eyes.insert(eyes.end(), scene.eyes.begin(), scene.eyes.end());
+  if (!eyes.empty()) {
+    write("eyes.json", eyes_json(eyes));
+    write("eyes.csv", eyes_csv(eyes));
+  }
   if (!summary.triangles.empty()) write("triangles.json", triangles_json(summary.triangles));
   write("index.html", bench_page(summary));
 }

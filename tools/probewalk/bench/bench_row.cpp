@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <vector>
 
 namespace probewalk::bench {
 namespace {
@@ -74,7 +75,7 @@ std::string rows_json(std::span<const BenchRow> rows) {
   return array.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-std::string rows_csv(std::span<const BenchRow> rows) {
+std::string csv_of(std::span<const nlohmann::ordered_json> objects) {
   std::string text;
   const auto add_line = [&](const Json& row, bool keys) {
     bool first = true;
@@ -85,9 +86,17 @@ std::string rows_csv(std::span<const BenchRow> rows) {
     }
     text += "\r\n";
   };
-  add_line(row_json(rows.empty() ? BenchRow{} : rows.front()), true);
-  for (const BenchRow& row : rows) add_line(row_json(row), false);
+  if (!objects.empty()) add_line(objects.front(), true);
+  for (const Json& row : objects) add_line(row, false);
   return text;
+}
+
+std::string rows_csv(std::span<const BenchRow> rows) {
+  std::vector<Json> objects;
+  for (const BenchRow& row : rows) objects.push_back(row_json(row));
+  if (!rows.empty()) return csv_of(objects);
+  const std::string header = csv_of(std::vector{row_json({})});
+  return header.substr(0, header.find('\n') + 1);
 }
 
 std::optional<double> failed_fraction(const BenchRow& row) {

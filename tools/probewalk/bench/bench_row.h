@@ -53,7 +53,9 @@ struct BenchRow {
 nlohmann::ordered_json row_json(const BenchRow& row);
 // An array of rows, two spaces to a level.
 std::string rows_json(std::span<const BenchRow> rows);
-// A header with the keys of the JSON in the same order, then a line a row (RFC 4180).
+// Flat objects with the same keys, as a header with the keys in their order, then a line an object (RFC 4180).
+std::string csv_of(std::span<const nlohmann::ordered_json> objects);
+// A header with the keys of the JSON in the same order, then a line a row.
 std::string rows_csv(std::span<const BenchRow> rows);
 
 // Wrong or without an answer, of all rays: one number for how often a method fails. Empty without triangles.

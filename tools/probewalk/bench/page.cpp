@@ -191,7 +191,7 @@ std::string scene_section(const SceneReport& report) {
   for (const std::string& missing : report.missing) html += "<div class=\"banner\"><b>Missing.</b> " + html_escaped(missing) + "</div>\n";
   html += "<p>" + html_escaped(scene_in_words(report)) + "</p>\n";
   html += charts(report) + "<h3>Methods</h3>\n" + methods_table(report) + all_rows(report) + equal_error_table(report) +
-          accelerations_table(report) + pictures(report);
+          accelerations_table(report) + eyes_table(report.eyes) + pictures(report);
   return html + "</section>\n";
 }
 

@@ -11,6 +11,7 @@
 #include "content/baseline/baseline_cache.h"
 #include "content/error.h"
 #include "content/scene/embree_query.h"
+#include "tools/probewalk/bench/eyes_bench.h"
 #include "tools/probewalk/bench/ground_truth.h"
 #include "tools/probewalk/bench/pack_levels.h"
 #include "tools/probewalk/bench/probe_contender.h"
@@ -289,6 +290,7 @@ SceneReport SceneBench::run() {
     }
   }
   tell_accelerations();
+  report_.eyes = bench_eyes(device_, options_, *finest_, dials_, poses_, truth_.get(), report_.name, progress_);
   if (truth_) time_triangles();
   for (const Measured& measured : measured_) report_.rows.push_back(measured.row);
   return std::move(report_);

@@ -7,6 +7,7 @@
 
 #include "tools/probewalk/bench/bench_row.h"
 #include "tools/probewalk/bench/errors.h"
+#include "tools/probewalk/bench/eyes_row.h"
 #include "tools/probewalk/bench/settings.h"
 
 namespace probewalk::bench {
@@ -42,6 +43,7 @@ struct SceneReport {
   bool has_truth = false, has_pictures = false;
   std::vector<BenchRow> rows;
   std::vector<AccelerationResult> accelerations;
+  std::vector<EyesRow> eyes;
   std::vector<WorstPicture> pictures;
   std::vector<TrianglesTime> triangles_times;
   std::vector<std::string> missing;  // what was not measured, and why
