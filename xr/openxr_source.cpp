@@ -67,8 +67,8 @@ OpenXrSource::OpenXrSource(const OpenXrInstance& instance, const Device& device,
       world_scale_(options.locomotion.world_scale),
       locomotion_(floor, options.locomotion),
       anchor_(start),
-      overlay_board_(options.overlay),
-      waits_ahead_(options.waits_ahead) {
+      waits_ahead_(options.waits_ahead),
+      overlay_board_(options.overlay) {
   create_session();
   refresh_.emplace(instance, session_.get());
   if (options.refresh_hz) refresh_->choose(*options.refresh_hz);

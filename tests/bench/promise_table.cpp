@@ -15,6 +15,7 @@
 #include <string>
 #include <vector>
 
+#include "content/bake/bake_job.h"
 #include "content/bake/map_store.h"
 #include "content/bake/placement/head_space.h"
 #include "content/bake/plan/planned_maps.h"
@@ -60,7 +61,7 @@ class Table {
     PlanTarget wanted;
     wanted.error = target;
     const Plan plan = plan_bake(space_, heads_, rays_, light_, exposure_, store, wanted, progress_);
-    PlannedMaps maps(store);
+    PlannedMaps maps(store, BakeOptions{}.samples);
     Measured measured;
     std::vector<ProbeRecord> records;
     std::size_t least = 4096, most = 0;
@@ -94,7 +95,7 @@ class Table {
       before = placement.sites.size();
       const BakeState state(folder_ / "grids", "promise-table");
       MapStore store(rays_, light_, exposure_.radiance_scale, state);
-      PlannedMaps maps(store);
+      PlannedMaps maps(store, BakeOptions{}.samples);
       std::map<int, double> geometry_s, radiance_s;
       for (const int n : kSides) {
         for (const bool light : {false, true}) {

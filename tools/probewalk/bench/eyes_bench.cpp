@@ -67,7 +67,9 @@ class EyesTracer {
       tracer_.record(commands, constants_.address(), options.extent_px);
       timer_.end(commands, 0);
     });
-    const GpuInterval interval = timer_.read(0, clock_).value();
+    // In commands of its own, after the pass.
+    run_commands(device_, [&](VkCommandBuffer commands) { timer_.bring(commands); });
+    const GpuInterval interval = timer_.read(0, clock_);
     return interval.end_ns - interval.begin_ns;
   }
 
