@@ -86,13 +86,13 @@ TEST(ScarceMemory, WhereABlockIsTooMuchALevelMayFit) {
 }
 
 TEST(ScarceMemory, ALevelThatFindsNoneIsAskedForAgain) {
-  const ScarceWalk walk = walk_with("again", from_rooms_on() + "refuse=30", "--frames 4");
+  const ScarceWalk walk = walk_with("again", from_rooms_on() + "refuse=36", "--realtime --seconds 4");
   ASSERT_EQ(walk.run.exit_code, 0) << walk.run.err;
-  EXPECT_EQ(walk.refused(), 30);
+  EXPECT_EQ(walk.refused(), 36);
   EXPECT_THAT(walk.run.err, HasSubstr("VK_ERROR_OUT_OF_DEVICE_MEMORY"));
+  EXPECT_THAT(walk.run.err, HasSubstr("loaded after all"));
   EXPECT_FALSE(walk.summary["streaming"]["troubles"].empty());
   for (const json& trouble : walk.summary["streaming"]["troubles"]) EXPECT_TRUE(trouble["overcome"]) << trouble;
-  EXPECT_GT(walk.brightness("frame-000003-left.png"), 20.0);
 }
 
 // No frame waits, none shows garbage: the level that had found some stays, and the report says why.
