@@ -114,7 +114,7 @@ struct Device::Impl {
   VkPhysicalDevice physical = VK_NULL_HANDLE;
   VkDevice device = VK_NULL_HANDLE;
   std::uint32_t family = 0, copy_family = 0;
-  VkQueue queue = VK_NULL_HANDLE, copy_queue = VK_NULL_HANDLE;
+  VkQueue queue = VK_NULL_HANDLE, copy_queue = VK_NULL_HANDLE, mirror_queue = VK_NULL_HANDLE;
   VmaAllocator allocator = VK_NULL_HANDLE;
   DeviceInfo info;
   bool has_memory_budget = false;
@@ -122,7 +122,7 @@ struct Device::Impl {
   float timestamp_period_ns = 1.0f;
   std::atomic<std::uint64_t> allocated_bytes{0};
   std::atomic<std::uint32_t> pipelines_built{0};
-  std::mutex queue_mutex, copy_mutex;
+  std::mutex queue_mutex, copy_mutex, mirror_mutex;
 
   ~Impl() {
     if (device != VK_NULL_HANDLE) vkDeviceWaitIdle(device);
@@ -175,15 +175,16 @@ void Device::Impl::create_device(const DeviceHooks& hooks) {
   has_calibrated_timestamps = has_extension(physical, VK_EXT_CALIBRATED_TIMESTAMPS_EXTENSION_NAME);
   if (has_calibrated_timestamps) extensions.push_back(VK_EXT_CALIBRATED_TIMESTAMPS_EXTENSION_NAME);
   const RequiredFeatures features;
-  const float priority = 1.0f;
+  constexpr std::array priorities{1.0f, 0.5f};
+  const std::uint32_t family_queues = queue_count(physical, family) > 1 ? 2 : 1;
   std::vector<VkDeviceQueueCreateInfo> queues;
   for (const std::uint32_t each : {family, copy_family}) {
     if (!queues.empty() && each == family) continue;
     VkDeviceQueueCreateInfo& queue_info = queues.emplace_back();
     queue_info.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO;
     queue_info.queueFamilyIndex = each;
-    queue_info.queueCount = 1;
-    queue_info.pQueuePriorities = &priority;
+    queue_info.queueCount = each == family ? family_queues : 1;
+    queue_info.pQueuePriorities = priorities.data();
   }
   VkDeviceCreateInfo device_info{VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO};
   device_info.pNext = &features.head;
@@ -197,6 +198,7 @@ void Device::Impl::create_device(const DeviceHooks& hooks) {
   volkLoadDevice(device);
   vkGetDeviceQueue(device, family, 0, &queue);
   vkGetDeviceQueue(device, copy_family, 0, &copy_queue);
+  vkGetDeviceQueue(device, family, family_queues - 1, &mirror_queue);
   VkPhysicalDeviceProperties properties{};
   vkGetPhysicalDeviceProperties(physical, &properties);
   timestamp_period_ns = properties.limits.timestampPeriod;
@@ -298,8 +300,13 @@ void Device::submit_copies(const VkSubmitInfo2& info) const {
   check(vkQueueSubmit2(impl_->copy_queue, 1, &info, VK_NULL_HANDLE), "vkQueueSubmit2");
 }
 
+VkResult Device::present(const VkPresentInfoKHR& info) const {
+  const std::lock_guard lock(impl_->mirror_queue == impl_->queue ? impl_->queue_mutex : impl_->mirror_mutex);
+  return vkQueuePresentKHR(impl_->mirror_queue, &info);
+}
+
 void Device::wait_idle() const {
-  const std::lock_guard lock(impl_->queue_mutex);
+  const std::scoped_lock lock(impl_->queue_mutex, impl_->copy_mutex, impl_->mirror_mutex);
   check(vkDeviceWaitIdle(impl_->device), "vkDeviceWaitIdle");
 }
 

@@ -72,12 +72,15 @@ class Device {
   // Pipelines made for this device so far: what a frame must not wait for. Whoever makes one counts it.
   std::uint32_t pipelines_built() const;
   void count_pipeline() const;
-  // To be held around calls of others that use the queue (xrEndFrame and the like, vkQueuePresentKHR).
+  // To be held around calls of others that use the queue (xrEndFrame and the like).
   [[nodiscard]] std::unique_lock<std::mutex> lock_queue() const;
   // Serialises vkQueueSubmit and friends between the frame thread, the loader and the mirror.
   void submit(const VkSubmitInfo2& info, VkFence fence) const;
   // The same to the queue of copy_queue_family().
   void submit_copies(const VkSubmitInfo2& info) const;
+  // vkQueuePresentKHR, which may wait for the display: on a queue of its own, where the family has a second one, so that
+  // no frame waits for it. What signals its semaphores has been submitted before.
+  VkResult present(const VkPresentInfoKHR& info) const;
   void wait_idle() const;
 
  private:

@@ -63,6 +63,10 @@ std::optional<std::uint32_t> find_copy_queue_family(VkPhysicalDevice device) {
   return std::nullopt;
 }
 
+std::uint32_t queue_count(VkPhysicalDevice device, std::uint32_t family) {
+  return queue_families(device).at(family).queueCount;
+}
+
 bool has_extension(VkPhysicalDevice device, const char* name) {
   std::uint32_t count = 0;
   check(vkEnumerateDeviceExtensionProperties(device, nullptr, &count, nullptr), "vkEnumerateDeviceExtensionProperties");

@@ -38,6 +38,8 @@ std::optional<std::uint32_t> find_queue_family(VkPhysicalDevice device, const Ca
 // A family that only copies, and copies any bytes, if there is one.
 std::optional<std::uint32_t> find_copy_queue_family(VkPhysicalDevice device);
 
+std::uint32_t queue_count(VkPhysicalDevice device, std::uint32_t family);
+
 bool has_extension(VkPhysicalDevice device, const char* name);
 
 // Describes the device; `suitable` and `missing` are judged with these extensions and presentation in addition.

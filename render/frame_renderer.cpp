@@ -16,6 +16,7 @@
 #include "render/commands.h"
 #include "render/depth_pass.h"
 #include "render/resolve.h"
+#include "render/target_views.h"
 #include "render/view.h"
 #include "shaders/shared/foveation.h"
 
@@ -37,19 +38,9 @@ struct FrameSlot {
     pool = make_command_pool(owner, owner.queue_family());
     allocate_commands(owner, pool, commands);
   }
-  ~FrameSlot() {
-    release_views();
-    vkDestroyCommandPool(device, pool, nullptr);
-  }
+  ~FrameSlot() { vkDestroyCommandPool(device, pool, nullptr); }
   FrameSlot(const FrameSlot&) = delete;
   FrameSlot& operator=(const FrameSlot&) = delete;
-
-  void release_views() {
-    for (VkImageView view : layer_views) vkDestroyImageView(device, view, nullptr);
-    layer_views.clear();
-    for (VkImageView view : depth_views) vkDestroyImageView(device, view, nullptr);
-    depth_views.clear();
-  }
 
   VkDevice device;
   VkCommandPool pool = VK_NULL_HANDLE;
@@ -58,11 +49,10 @@ struct FrameSlot {
   Buffer hidden;     // with a visibility mask
   std::uint64_t hidden_version = 0;
   PassTimer timer;
-  std::vector<VkImageView> layer_views, depth_views;  // of the target
-  std::uint64_t frame = 0;                            // submitted last from this slot
-  std::uint64_t frame_work = 0;                       // timeline value of that
-  std::uint64_t last_work = 0;                        // of the slot's last submit
-  bool is_timed = true;                               // the frame recorded last
+  std::uint64_t frame = 0;       // submitted last from this slot
+  std::uint64_t frame_work = 0;  // timeline value of that
+  std::uint64_t last_work = 0;   // of the slot's last submit
+  bool is_timed = true;          // the frame recorded last
   bool has_untaken_times = false;
 };
 
@@ -88,6 +78,7 @@ struct FrameRenderer::Impl {
         options(dials),
         picture(owner, dials.tracer, dials, Resolve::Shown::kPicture),
         clock(owner),
+        target_views(owner),
         timeline(make_timeline(owner)) {
     for (std::uint32_t i = 0; i < kFrameSlots; ++i) slots.emplace_back(owner);
   }
@@ -223,6 +214,7 @@ struct FrameRenderer::Impl {
   std::uint64_t last_guides_frame = 0;
   const Passes* used = &picture;  // of the frame recorded last
   GpuClock clock;
+  TargetViews target_views;
   VkSemaphore timeline;
   std::deque<FrameSlot> slots;
   std::uint64_t work = 0;       // timeline value of the last submit
@@ -317,15 +309,9 @@ void FrameRenderer::record(const FrameTarget& target, const Guides& guides) {
   slot.is_timed = impl.is_timed;
   if (slot.is_timed) slot.timer.reset();
   slot.has_untaken_times = false;
-  slot.release_views();
-  for (std::uint32_t layer = 0; layer < target.layers; ++layer) {
-    slot.layer_views.push_back(make_layer_view(impl.device, target.image, target.format, layer));
-  }
+  const std::span<const VkImageView> layer_views = impl.target_views.of(target.image, target.format, target.layers);
   impl.used = &impl.choose_passes();
   const Passes& passes = *impl.used;
-  for (std::uint32_t layer = 0; passes.depth && layer < target.layers; ++layer) {
-    slot.depth_views.push_back(make_layer_view(impl.device, target.depth_image, target.depth_format, layer));
-  }
   check(vkResetCommandPool(impl.device.handle(), slot.pool, 0), "vkResetCommandPool");
 
   const VkCommandBuffer upload = slot.commands[kUploadCommands];
@@ -345,11 +331,14 @@ void FrameRenderer::record(const FrameTarget& target, const Guides& guides) {
 
   begin_commands(slot.commands[kResolve]);
   if (slot.is_timed) slot.timer.begin(slot.commands[kResolve], kResolve);
-  passes.resolve.record(slot.commands[kResolve], constants, target, slot.layer_views);
-  if (passes.depth) passes.depth->record(slot.commands[kResolve], constants, target, slot.depth_views);
+  passes.resolve.record(slot.commands[kResolve], constants, target, layer_views);
+  if (passes.depth) {
+    passes.depth->record(slot.commands[kResolve], constants, target,
+                         impl.target_views.of(target.depth_image, target.depth_format, target.layers));
+  }
   if (GuidePass* guide_pass = impl.choose_guides(guides.any())) {
     guide_pass->record(slot.commands[kResolve], impl.slot_index(), constants, passes.tracer.distance(), target,
-                       slot.layer_views, guides);
+                       layer_views, guides);
   }
   if (slot.is_timed) slot.timer.end(slot.commands[kResolve], kResolve);
   check(vkEndCommandBuffer(slot.commands[kResolve]), "vkEndCommandBuffer");

@@ -62,9 +62,9 @@ class FrameRenderer {
   // Whether frames recorded from now on are timed on the device; they are unless told otherwise.
   void set_timed(bool timed);
   // Waits until the frame before the last has finished, takes in what has streamed, records the passes. The target has
-  // the options' formats, as many layers as there are views, and an extent within theirs. Guides are drawn over the
-  // picture. What they need is made on a thread of its own when a frame first has some, which goes without until then,
-  // and is given up when none has had any for kGuideRest_frames.
+  // the options' formats, as many layers as there are views, and an extent within theirs; its images outlive the
+  // renderer. Guides are drawn over the picture. What they need is made on a thread of its own when a frame first has
+  // some, which goes without until then, and is given up when none has had any for kGuideRest_frames.
   void record(const FrameTarget& target, const Guides& guides = {});
   // Writes the views' poses and the settings; callable again until submit. As many views as in the options.
   void write(std::span<const ViewConstants> views, const FrameSettings& settings);

@@ -93,7 +93,6 @@ struct ProbeStore::Impl {
         probe_count(probes),
         arena(owner, dials.arena_bytes),
         build_bytes_per_frame(build_budget(owner, dials.build_bytes_per_frame)),
-        pyramids(owner),
         tables(owner, grid, probes, dials.frame_slots, dials.fade_frames) {
     if (owner.has_copy_queue() || dials.copy_apart) copies.emplace(owner);
   }
@@ -101,6 +100,8 @@ struct ProbeStore::Impl {
   ResidentLevel make_level(const RoomUpload& room) {
     ResidentLevel level{ProbeBlocks(device, arena, room.probes, options.always_stage), room.first_probe, {}};
     level.pyramids = PyramidJob(level.blocks.take_open_pyramids());
+    // Where loaders hand in whole pyramids the device needs no means to build any; a frame must not wait for them.
+    if (!level.pyramids.is_done()) std::call_once(builder_made, [this] { pyramids.emplace(device); });
     for (const DeviceProbe& probe : room.probes) level.records.push_back(probe.record);
     level.read_addresses();
     return level;
@@ -192,7 +193,7 @@ struct ProbeStore::Impl {
     while (!building.empty() && bytes < budget_bytes) {
       const Key key = building.front();
       PyramidJob& job = levels.at(key).pyramids;
-      bytes += pyramids.record(commands, job, budget_bytes - bytes);
+      bytes += pyramids->record(commands, job, budget_bytes - bytes);
       if (!job.is_done()) break;
       building.pop_front();
       show(key);
@@ -247,7 +248,8 @@ struct ProbeStore::Impl {
   ProbeArena arena;  // before all that holds its pieces
 
   const std::uint64_t build_bytes_per_frame;
-  const PyramidBuilder pyramids;
+  std::once_flag builder_made;
+  std::optional<PyramidBuilder> pyramids;
   mutable std::mutex mutex;
   ProbeTables tables;
   std::map<Key, ResidentLevel> levels;

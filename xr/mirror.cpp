@@ -39,8 +39,8 @@ Mirror::~Mirror() {
   }
   changed_.notify_all();
   thread_.join();
-  spdlog::info("mirror: {} pictures, presenting one held the device's queue for {:.2f} ms at most",
-               swapchain_.presented(), static_cast<double>(swapchain_.longest_lock_ns()) * 1e-6);
+  spdlog::info("mirror: {} pictures, presenting one took {:.2f} ms at most",
+               swapchain_.presented(), static_cast<double>(swapchain_.longest_present_ns()) * 1e-6);
   // Not check: a lost device must not throw here.
   vkDeviceWaitIdle(device_.handle());
   vkDestroyFence(device_.handle(), copied_, nullptr);

@@ -202,13 +202,9 @@ bool WindowSwapchain::present(std::uint32_t index, const FrameTarget& eyes, cons
   show.swapchainCount = 1;
   show.pSwapchains = &swapchain_;
   show.pImageIndices = &image;
-  VkResult shown = VK_SUCCESS;
-  {
-    const auto queue = device_.lock_queue();
-    const std::int64_t locked_ns = now_ns();
-    shown = vkQueuePresentKHR(device_.queue(), &show);
-    longest_lock_ns_ = std::max(longest_lock_ns_, now_ns() - locked_ns);
-  }
+  const std::int64_t begin_ns = now_ns();
+  const VkResult shown = device_.present(show);
+  longest_present_ns_ = std::max(longest_present_ns_, now_ns() - begin_ns);
   if (shown == VK_ERROR_SURFACE_LOST_KHR) return false;
   if (shown == VK_ERROR_OUT_OF_DATE_KHR || shown == VK_SUBOPTIMAL_KHR) return recreate(window);
   check(shown, "vkQueuePresentKHR");

@@ -33,9 +33,9 @@ class WindowSwapchain {
   // False when the surface is gone.
   bool present(std::uint32_t slot, const FrameTarget& eyes, const std::vector<ShownView>& layout, VkExtent2D window);
 
-  // Pictures that reached the display, and the longest that one of them held the queue's lock in vkQueuePresentKHR.
+  // Pictures that reached the display, and the longest that one of them took in vkQueuePresentKHR.
   std::uint64_t presented() const { return presented_; }
-  std::int64_t longest_lock_ns() const { return longest_lock_ns_; }
+  std::int64_t longest_present_ns() const { return longest_present_ns_; }
   VkPresentModeKHR mode() const { return mode_; }
 
  private:
@@ -66,7 +66,7 @@ class WindowSwapchain {
   std::vector<Slot> slots_;
   OverlayPainter overlay_;
   std::uint64_t presented_ = 0;
-  std::int64_t longest_lock_ns_ = 0;
+  std::int64_t longest_present_ns_ = 0;
 };
 
 }  // namespace probewalk

@@ -75,6 +75,7 @@ void ChunkLoader::wait(std::chrono::milliseconds at_most) {
 
 void ChunkLoader::work(std::stop_token stop, unsigned thread) {
   name_this_thread("loader " + std::to_string(thread));
+  give_way_to_frames();
   while (true) {
     Request request;
     {

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # streaming_over_idle.sh PACK OUT [WALK]: what loading rooms costs the frames. The same walk twice: within a part of the
 # pack's device memory, so that rooms come and go all the time, and, for comparison, once more through rooms that are all
-# there already. Frames and the device (lavapipe, one thread) have one core, the loaders another. By hand:
+# there already. The device (lavapipe, one thread) has one core to itself, as a GPU would, all else another. By hand:
 #   probewalk on the PATH (or in BIN)
 # Settings: SECONDS_LONG=120 BUDGET_PART=10 EYE=160x180; WALK: a path recorded on the pack (default: its tour)
 set -euo pipefail
@@ -11,15 +11,18 @@ bin=${BIN:-$(dirname "$(command -v probewalk)")}
 [ "$(nproc)" -ge 2 ] || { echo "this needs two cores" >&2; exit 1; }
 export LP_NUM_THREADS=1
 
-# NAME OPTION…: a walk on core 0 whose loaders are moved to core 1 as they appear.
+# NAME OPTION…: a walk on core 1 whose device's threads are moved to core 0 as they appear.
 walk_apart() {
   local name=$1 task; shift
   rm -rf "$out/$name"
-  taskset -c 0 "$bin/probewalk" walk "$pack" --display offscreen --realtime --eye-size "$eye" --report "$out/$name" \
+  taskset -c 1 "$bin/probewalk" walk "$pack" --display offscreen --realtime --eye-size "$eye" --report "$out/$name" \
     "$@" 2>"$out/$name.notes" & local pid=$!
   for _ in $(seq 100); do
     for task in /proc/$pid/task/*; do
-      if grep -qs '^loader' "$task/comm"; then taskset -cp 1 "${task##*/}" >/dev/null 2>&1 || true; fi
+      # Its workers, and those without a name of their own: its queue's thread is among them.
+      if grep -qs '^llvmpipe\|^probewalk' "$task/comm" && [ "${task##*/}" != $pid ]; then
+        taskset -cp 0 "${task##*/}" >/dev/null 2>&1 || true
+      fi
     done
     sleep 0.1
     kill -0 $pid 2>/dev/null || break

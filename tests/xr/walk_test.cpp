@@ -156,6 +156,19 @@ TEST(WalkOffscreen, IsRepeatable) {
   EXPECT_EQ(seen[0].rgb, seen[1].rgb);
 }
 
+TEST(WalkOffscreen, ShowsTheSameWhoeverBuildsThePyramids) {
+  std::vector<ImageRgb8> seen;
+  for (const PyramidMaker maker : {PyramidMaker::kHost, PyramidMaker::kDevice}) {
+    WalkOptions options = offscreen(4);
+    options.pictures = fresh(maker == PyramidMaker::kHost ? "pyramids-host" : "pyramids-device");
+    options.pyramids = maker;
+    const WalkResult result = walk_quietly(options);
+    EXPECT_EQ(result.ledger.frames().back().level_shown, 1);
+    seen.push_back(read_png(*options.pictures / "frame-000003-left.png"));
+  }
+  EXPECT_EQ(seen[0].rgb, seen[1].rgb);
+}
+
 TEST(WalkOffscreen, ReplaysWhatItRecorded) {
   const fs::path folder = fresh("replay");
   fs::create_directories(folder);
