@@ -297,14 +297,14 @@ TEST_F(WebServer, ThatIsGoneForGoodLeavesTheWalkAsItIs) {
   const fs::path dir = fresh_folder("web-server-gone");
   SlowLink link(server_->port(), {});
   const std::string url = "http://127.0.0.1:" + std::to_string(link.port()) + "/throttled/";
-  const pid_t child = start_probewalk(dir, command(dir, url, {"--realtime", "--save-every", "100"}, "120"));
+  const pid_t child = start_probewalk(dir, command(dir, url, {"--realtime", "--save-every", "100"}, "480"));
   const bool begun = has_kept_something(dir / "cache");
   server_->kill();
   const Walked walked = outcome(dir, finish_probewalk(child, dir));
   server_->start();
   ASSERT_TRUE(begun);
   EXPECT_EQ(walked.run.exit_code, 0) << walked.run.err;
-  EXPECT_EQ(walked.summary["frames"].get<int>() + walked.summary["warmup_frames"].get<int>(), 120);
+  EXPECT_EQ(walked.summary["frames"].get<int>() + walked.summary["warmup_frames"].get<int>(), 480);
 }
 
 TEST_F(WebServer, ThatHasNoPackIsNamedInOneLine) {
