@@ -4,6 +4,7 @@
 
 #include <stdexcept>
 
+#include "render/commands.h"
 #include "render/spirv.h"
 #include "render/tracer_choice.h"
 #include "shaders/shared/edge_list.h"
@@ -24,15 +25,6 @@ VkDeviceSize list_bytes(const EdgeSamplerOptions& options) {
   }
   return sizeof(EdgeListHead) +
          sizeof(std::uint32_t) * VkDeviceSize{options.extent_px.width} * options.extent_px.height * options.views;
-}
-
-void memory_barrier(VkCommandBuffer commands, VkPipelineStageFlags2 before, VkAccessFlags2 written,
-                    VkPipelineStageFlags2 after, VkAccessFlags2 used) {
-  const VkMemoryBarrier2 barrier{VK_STRUCTURE_TYPE_MEMORY_BARRIER_2, nullptr, before, written, after, used};
-  VkDependencyInfo dependency{VK_STRUCTURE_TYPE_DEPENDENCY_INFO};
-  dependency.memoryBarrierCount = 1;
-  dependency.pMemoryBarriers = &barrier;
-  vkCmdPipelineBarrier2(commands, &dependency);
 }
 
 }  // namespace

@@ -54,7 +54,8 @@ class PassTimer {
   void reset();
   void begin(VkCommandBuffer commands, std::uint32_t pass) const;
   void end(VkCommandBuffer commands, std::uint32_t pass) const;
-  // Once a frame, after all passes, in a command buffer after theirs.
+  // Once a frame, after all passes; in a command buffer after theirs, where a pass draws. All that was written before
+  // can be read through mapped memory, too, once the commands have finished.
   void bring(VkCommandBuffer commands) const;
   // Once bring()'s commands have finished, and no sooner.
   GpuInterval read(std::uint32_t pass, const GpuClock& clock) const;

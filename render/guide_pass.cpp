@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "render/commands.h"
 #include "render/spirv.h"
 #include "shaders/shared/guides.h"
 
@@ -80,26 +81,12 @@ void GuidePass::record(VkCommandBuffer commands, std::uint32_t slot, VkDeviceAdd
   barrier.dstAccessMask = VK_ACCESS_2_COLOR_ATTACHMENT_READ_BIT | VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT;
   pipeline_barrier(commands, barrier);
 
-  VkRenderingAttachmentInfo attachment{VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO};
-  attachment.imageLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
-  attachment.loadOp = VK_ATTACHMENT_LOAD_OP_LOAD;
-  attachment.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
-  VkRenderingInfo rendering{VK_STRUCTURE_TYPE_RENDERING_INFO};
-  rendering.renderArea = {{0, 0}, target.extent};
-  rendering.layerCount = 1;
-  rendering.colorAttachmentCount = 1;
-  rendering.pColorAttachments = &attachment;
-  const VkViewport viewport{
-      0.0f, 0.0f, static_cast<float>(target.extent.width), static_cast<float>(target.extent.height), 0.0f, 1.0f};
-  vkCmdSetViewport(commands, 0, 1, &viewport);
-  vkCmdSetScissor(commands, 0, 1, &rendering.renderArea);
   const auto draw = [&](int first_quad, int end_quad) {
     vkCmdDraw(commands, static_cast<std::uint32_t>(6 * (end_quad - first_quad)), 1,
               static_cast<std::uint32_t>(6 * first_quad), 0);
   };
   for (std::uint32_t layer = 0; layer < target.layers; ++layer) {
-    attachment.imageView = layer_views[layer];
-    vkCmdBeginRendering(commands, &rendering);
+    begin_drawing(commands, layer_views[layer], target.extent, VK_ATTACHMENT_LOAD_OP_LOAD);
     pipeline_.bind(commands, &mine.images, {frame, layer, 0, mine.constants.address()});
     if (constants.marker_radius_m > 0.0f) draw(0, kGuideVignetteQuad);
     if (guides.vignette) draw(kGuideVignetteQuad, kGuideQuads);

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cstring>
 
+#include "render/commands.h"
 #include "render/spirv.h"
 
 namespace probewalk {
@@ -24,7 +25,7 @@ OverlayPass::OverlayPass(const Device& device, VkFormat format, const OverlayAtl
 }
 
 void OverlayPass::record(VkCommandBuffer commands, std::uint32_t slot, VkImageView screen, VkExtent2D extent,
-                         const OverlayPicture& picture) {
+                         const OverlayPicture& picture, VkAttachmentLoadOp load) {
   const VkDeviceSize vertex_bytes = picture.vertices.size() * sizeof(OverlayVertex);
   const VkDeviceSize index_bytes = picture.indices.size() * sizeof(std::uint32_t);
   const VkDeviceSize bytes = sizeof(OverlayHead) + vertex_bytes + index_bytes;
@@ -42,20 +43,7 @@ void OverlayPass::record(VkCommandBuffer commands, std::uint32_t slot, VkImageVi
   std::memcpy(buffer.mapped() + sizeof(head) + vertex_bytes, picture.indices.data(), index_bytes);
   buffer.flush();
 
-  VkRenderingAttachmentInfo attachment{VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO};
-  attachment.imageView = screen;
-  attachment.imageLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
-  attachment.loadOp = VK_ATTACHMENT_LOAD_OP_LOAD;
-  attachment.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
-  VkRenderingInfo rendering{VK_STRUCTURE_TYPE_RENDERING_INFO};
-  rendering.renderArea = {{0, 0}, extent};
-  rendering.layerCount = 1;
-  rendering.colorAttachmentCount = 1;
-  rendering.pColorAttachments = &attachment;
-  const VkViewport viewport{0.0f, 0.0f, static_cast<float>(extent.width), static_cast<float>(extent.height),
-                            0.0f, 1.0f};
-  vkCmdBeginRendering(commands, &rendering);
-  vkCmdSetViewport(commands, 0, 1, &viewport);
+  begin_drawing(commands, screen, extent, load);
   pipeline_.bind(commands, nullptr, {buffer.address()});
   for (const OverlayPicture::Part& part : picture.parts) {
     vkCmdSetScissor(commands, 0, 1, &part.clip);

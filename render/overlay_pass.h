@@ -37,10 +37,11 @@ class OverlayPass {
   // `format`: an sRGB format, whose attachment encodes. Of `slots` pictures each may be on the device at once.
   OverlayPass(const Device& device, VkFormat format, const OverlayAtlas& atlas, std::uint32_t slots);
 
-  // Draws over `screen`, a view of a colour attachment in VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL. The device must be
-  // done with what was recorded last for `slot`. Barriers are the caller's.
+  // Draws over `screen`, a view of a colour attachment in VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, or over nothing with
+  // VK_ATTACHMENT_LOAD_OP_CLEAR. The device must be done with what was recorded last for `slot`. Barriers are the
+  // caller's.
   void record(VkCommandBuffer commands, std::uint32_t slot, VkImageView screen, VkExtent2D extent,
-              const OverlayPicture& picture);
+              const OverlayPicture& picture, VkAttachmentLoadOp load = VK_ATTACHMENT_LOAD_OP_LOAD);
 
  private:
   const Device& device_;

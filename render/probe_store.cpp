@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "render/check.h"
+#include "render/commands.h"
 #include "render/copy_queue.h"
 #include "render/one_shot.h"
 #include "render/probe_arena.h"
@@ -46,10 +47,7 @@ constexpr std::size_t kPiecesPerFrame = 64;
 // A processor that plays the device reads samples a hundred times as slowly, on the cores that draw the frame.
 std::uint64_t build_budget(const Device& device, std::uint64_t stated_bytes) {
   constexpr std::uint64_t kSoftwareMost_bytes = 1u << 20;
-  VkPhysicalDeviceProperties properties{};
-  vkGetPhysicalDeviceProperties(device.physical(), &properties);
-  return properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU ? std::min(stated_bytes, kSoftwareMost_bytes)
-                                                              : stated_bytes;
+  return device.info().is_software ? std::min(stated_bytes, kSoftwareMost_bytes) : stated_bytes;
 }
 
 // What the device may still read or write.
@@ -58,30 +56,18 @@ struct Retired {
   std::vector<Buffer> staging;
 };
 
+constexpr VkPipelineStageFlags2 kCopies = VK_PIPELINE_STAGE_2_COPY_BIT;
+constexpr VkPipelineStageFlags2 kShaders = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
+constexpr VkAccessFlags2 kCopied = VK_ACCESS_2_TRANSFER_WRITE_BIT, kBuilt = VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT;
+
 // What has been written so far is seen by copies after.
 void make_visible_to_copies(VkCommandBuffer commands) {
-  VkMemoryBarrier2 barrier{VK_STRUCTURE_TYPE_MEMORY_BARRIER_2};
-  barrier.srcStageMask = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_2_COPY_BIT;
-  barrier.srcAccessMask = VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT | VK_ACCESS_2_TRANSFER_WRITE_BIT;
-  barrier.dstStageMask = VK_PIPELINE_STAGE_2_COPY_BIT;
-  barrier.dstAccessMask = VK_ACCESS_2_TRANSFER_READ_BIT | VK_ACCESS_2_TRANSFER_WRITE_BIT;
-  VkDependencyInfo dependency{VK_STRUCTURE_TYPE_DEPENDENCY_INFO};
-  dependency.memoryBarrierCount = 1;
-  dependency.pMemoryBarriers = &barrier;
-  vkCmdPipelineBarrier2(commands, &dependency);
+  memory_barrier(commands, kShaders | kCopies, kBuilt | kCopied, kCopies, VK_ACCESS_2_TRANSFER_READ_BIT | kCopied);
 }
 
 // Copies done before are seen by shaders after.
 void make_visible_to_shaders(VkCommandBuffer commands) {
-  VkMemoryBarrier2 barrier{VK_STRUCTURE_TYPE_MEMORY_BARRIER_2};
-  barrier.srcStageMask = VK_PIPELINE_STAGE_2_COPY_BIT;
-  barrier.srcAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT;
-  barrier.dstStageMask = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
-  barrier.dstAccessMask = VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT;
-  VkDependencyInfo dependency{VK_STRUCTURE_TYPE_DEPENDENCY_INFO};
-  dependency.memoryBarrierCount = 1;
-  dependency.pMemoryBarriers = &barrier;
-  vkCmdPipelineBarrier2(commands, &dependency);
+  memory_barrier(commands, kCopies, kCopied, kShaders, VK_ACCESS_2_SHADER_STORAGE_READ_BIT | kBuilt);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "content/probe/tracer_f32.h"
+#include "render/commands.h"
 #include "render/spirv.h"
 #include "shaders/shared/pyramid_build.h"
 
@@ -58,15 +59,9 @@ std::uint64_t PyramidBuilder::record(VkCommandBuffer commands, PyramidJob& job, 
 }
 
 void make_visible_between_shaders(VkCommandBuffer commands) {
-  VkMemoryBarrier2 barrier{VK_STRUCTURE_TYPE_MEMORY_BARRIER_2};
-  barrier.srcStageMask = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
-  barrier.srcAccessMask = VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT;
-  barrier.dstStageMask = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
-  barrier.dstAccessMask = VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT;
-  VkDependencyInfo dependency{VK_STRUCTURE_TYPE_DEPENDENCY_INFO};
-  dependency.memoryBarrierCount = 1;
-  dependency.pMemoryBarriers = &barrier;
-  vkCmdPipelineBarrier2(commands, &dependency);
+  constexpr VkPipelineStageFlags2 kShaders = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
+  constexpr VkAccessFlags2 kWritten = VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT;
+  memory_barrier(commands, kShaders, kWritten, kShaders, VK_ACCESS_2_SHADER_STORAGE_READ_BIT | kWritten);
 }
 
 }  // namespace probewalk

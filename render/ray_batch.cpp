@@ -77,8 +77,7 @@ TracedRays RayBatch::trace_timed(const ProbeStore& store, const TraceConstants& 
       timer.begin(commands, 0);
       vkCmdDispatch(commands, (groups + interleave_ - 1) / interleave_ * interleave_, 1, 1);
       timer.end(commands, 0);
-      timer.bring(commands);
-      make_visible_to_cpu(commands);
+      timer.bring(commands);  // makes the answers visible, too
     });
     const GpuInterval interval = timer.read(0, clock);
     result.device_ns += interval.end_ns - interval.begin_ns;

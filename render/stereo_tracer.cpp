@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <numeric>
+#include <type_traits>
 
+#include "content/probe/tracer_f32.h"
 #include "render/one_shot.h"
 #include "render/spirv.h"
 
@@ -49,8 +51,8 @@ StereoTracer::StereoTracer(const Device& device, const TracerOptions& options)
                              options.masked ? VK_TRUE : VK_FALSE},
                             options.setup.choice, options.shared_openings))) {
   if (options.shared_openings) {
-    constexpr VkDeviceSize kPlace_bytes = 32, kCorners = 8;  // CandidatePlace of shaders/shared/tracer.h
-    openings_ = Buffer(device, kPlace_bytes * kCorners * options.views, BufferMemory::kDevice);
+    constexpr std::size_t kCorners = std::extent_v<decltype(f32::CellCandidates::probe)>;
+    openings_ = Buffer(device, sizeof(f32::CandidatePlace) * kCorners * options.views, BufferMemory::kDevice);
     find_openings_.emplace(
         Pipeline::compute(device, nullptr, spirv::k_find_openings_comp, tracing_constants({}, options.setup.choice)));
   }

@@ -5,9 +5,14 @@
 namespace probewalk {
 
 TargetViews::~TargetViews() {
+  forget();
+}
+
+void TargetViews::forget() {
   for (const auto& [image, views] : views_) {
     for (VkImageView view : views) vkDestroyImageView(device_.handle(), view, nullptr);
   }
+  views_.clear();
 }
 
 std::span<const VkImageView> TargetViews::of(VkImage image, VkFormat format, std::uint32_t layers) {

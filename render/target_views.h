@@ -20,8 +20,10 @@ class TargetViews {
   TargetViews(const TargetViews&) = delete;
   TargetViews& operator=(const TargetViews&) = delete;
 
-  // `layers` views of the image, which outlives this and has had the same format every time.
+  // `layers` views of the image, which outlives its views here and has had the same format every time.
   std::span<const VkImageView> of(VkImage image, VkFormat format, std::uint32_t layers);
+  // Of images that go. The device must be done with them.
+  void forget();
 
  private:
   const Device& device_;

@@ -32,7 +32,7 @@ OpenXrOverlay::Drawing::Drawing(const Device& device, XrSession session, VkForma
       pass(device, format, panel.atlas(), 1) {}
 
 OpenXrOverlay::OpenXrOverlay(const Device& device, XrSession session, VkFormat format, const OverlayBoard& board)
-    : device_(device), session_(session), format_(format), board_(board) {}
+    : device_(device), session_(session), format_(format), board_(board), views_(device) {}
 
 OpenXrOverlay::~OpenXrOverlay() {
   if (making_.valid()) making_.wait();
@@ -48,14 +48,13 @@ bool OpenXrOverlay::is_idle() const {
 }
 
 void OpenXrOverlay::hide() {
+  views_.forget();
   drawing_.reset();
   has_picture_ = false;
   next_at_ = 0;
   place_.forget();
-  vkDestroyImageView(device_.handle(), view_, nullptr);
   vkDestroyFence(device_.handle(), drawn_, nullptr);
   vkDestroyCommandPool(device_.handle(), pool_, nullptr);
-  view_ = VK_NULL_HANDLE;
   drawn_ = VK_NULL_HANDLE;
   pool_ = VK_NULL_HANDLE;
 }
@@ -129,8 +128,6 @@ void OpenXrOverlay::record(VkImage image, const OverlayPicture& picture) {
   }
   check(vkResetFences(device_.handle(), 1, &drawn_), "vkResetFences");
   check(vkResetCommandPool(device_.handle(), pool_, 0), "vkResetCommandPool");
-  vkDestroyImageView(device_.handle(), view_, nullptr);
-  view_ = make_layer_view(device_, image, format_, 0);
   begin_commands(commands_);
   VkImageMemoryBarrier2 barrier =
       colour_barrier(image, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
@@ -138,26 +135,9 @@ void OpenXrOverlay::record(VkImage image, const OverlayPicture& picture) {
   barrier.dstStageMask = VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT;
   barrier.dstAccessMask = VK_ACCESS_2_COLOR_ATTACHMENT_READ_BIT | VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT;
   pipeline_barrier(commands_, barrier);
-  // Clear through and through where there is no panel.
-  VkRenderingAttachmentInfo attachment{VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO};
-  attachment.imageView = view_;
-  attachment.imageLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
-  attachment.loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR;
-  attachment.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
-  VkRenderingInfo rendering{VK_STRUCTURE_TYPE_RENDERING_INFO};
-  rendering.renderArea = {{0, 0}, kExtent};
-  rendering.layerCount = 1;
-  rendering.colorAttachmentCount = 1;
-  rendering.pColorAttachments = &attachment;
-  vkCmdBeginRendering(commands_, &rendering);
-  vkCmdEndRendering(commands_);
-  barrier = colour_barrier(image, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
-  barrier.srcStageMask = VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT;
-  barrier.srcAccessMask = VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT;
-  barrier.dstStageMask = VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT;
-  barrier.dstAccessMask = VK_ACCESS_2_COLOR_ATTACHMENT_READ_BIT | VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT;
-  pipeline_barrier(commands_, barrier);
-  drawing_->pass.record(commands_, 0, view_, kExtent, picture);
+  // One sees through where there is no panel.
+  drawing_->pass.record(commands_, 0, views_.of(image, format_, 1).front(), kExtent, picture,
+                        VK_ATTACHMENT_LOAD_OP_CLEAR);
   check(vkEndCommandBuffer(commands_), "vkEndCommandBuffer");
 }
 

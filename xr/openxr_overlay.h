@@ -12,6 +12,7 @@
 
 #include "render/device.h"
 #include "render/overlay_pass.h"
+#include "render/target_views.h"
 #include "xr/openxr_api.h"
 #include "xr/openxr_swapchain.h"
 #include "xr/overlay/overlay_board.h"
@@ -56,7 +57,7 @@ class OpenXrOverlay {
   VkCommandPool pool_ = VK_NULL_HANDLE;
   VkCommandBuffer commands_ = VK_NULL_HANDLE;
   VkFence drawn_ = VK_NULL_HANDLE;
-  VkImageView view_ = VK_NULL_HANDLE;  // that the last commands drew into
+  TargetViews views_;  // of the swapchain's images
   std::unique_ptr<Drawing> drawing_;
   bool has_picture_ = false;  // the swapchain has been drawn into
   bool refused_ = false;      // the runtime has no room for it: not asked again

@@ -36,7 +36,7 @@ void barrier(VkCommandBuffer commands, VkImage image, std::uint32_t layers, VkIm
 
 WindowSwapchain::WindowSwapchain(const Device& device, VkSurfaceKHR surface, std::uint32_t slots, Sharing sharing,
                                  const OverlayBoard* overlay)
-    : device_(device), surface_(surface), sharing_(sharing), overlay_(device, overlay, slots) {
+    : device_(device), surface_(surface), sharing_(sharing), views_(device), overlay_(device, overlay, slots) {
   choose_format_and_mode();
   pool_ = make_command_pool(device, device.queue_family(), VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT);
   slots_.resize(slots);
@@ -55,7 +55,6 @@ WindowSwapchain::~WindowSwapchain() {
   release_images();  // those retired, too
   if (swapchain_ != VK_NULL_HANDLE) vkDestroySwapchainKHR(device_.handle(), swapchain_, nullptr);
   for (const Slot& slot : slots_) {
-    vkDestroyImageView(device_.handle(), slot.screen, nullptr);
     vkDestroySemaphore(device_.handle(), slot.available, nullptr);
     vkDestroyFence(device_.handle(), slot.done, nullptr);
   }
@@ -101,6 +100,7 @@ void WindowSwapchain::release_images() {
   for (VkSemaphore semaphore : retired_) vkDestroySemaphore(device_.handle(), semaphore, nullptr);
   retired_ = std::move(copied_);
   copied_.clear();
+  views_.forget();
   images_.clear();
 }
 
@@ -254,10 +254,7 @@ void WindowSwapchain::paint_overlay(std::uint32_t index, VkImage screen) {
   constexpr VkAccessFlags2 kDrawn = VK_ACCESS_2_COLOR_ATTACHMENT_READ_BIT | VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT;
   barrier(slot.commands, screen, 1, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
           VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT, kDraw, kDrawn);
-  vkDestroyImageView(device_.handle(), slot.screen, nullptr);
-  slot.screen = VK_NULL_HANDLE;
-  slot.screen = make_layer_view(device_, screen, format_.format, 0);
-  overlay_.paint(slot.commands, index, slot.screen, extent_);
+  overlay_.paint(slot.commands, index, views_.of(screen, format_.format, 1).front(), extent_);
   barrier(slot.commands, screen, 1, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, VK_IMAGE_LAYOUT_PRESENT_SRC_KHR, kDraw,
           VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, 0);
 }

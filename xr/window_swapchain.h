@@ -6,6 +6,7 @@
 
 #include "render/device.h"
 #include "render/frame_target.h"
+#include "render/target_views.h"
 #include "xr/overlay/overlay_painter.h"
 #include "xr/window_layout.h"
 
@@ -43,7 +44,6 @@ class WindowSwapchain {
     VkCommandBuffer commands = VK_NULL_HANDLE;
     VkSemaphore available = VK_NULL_HANDLE;
     VkFence done = VK_NULL_HANDLE;
-    VkImageView screen = VK_NULL_HANDLE;  // with the overlay only
   };
   void choose_format_and_mode();
   bool recreate(VkExtent2D window);
@@ -64,6 +64,7 @@ class WindowSwapchain {
   std::vector<VkSemaphore> retired_;  // of the swapchain before, whose last picture may still be waited for
   VkCommandPool pool_ = VK_NULL_HANDLE;
   std::vector<Slot> slots_;
+  TargetViews views_;  // with the overlay only
   OverlayPainter overlay_;
   std::uint64_t presented_ = 0;
   std::int64_t longest_present_ns_ = 0;

@@ -55,7 +55,7 @@ if [ -z "$walk" ]; then
   walk_apart record --seconds "$seconds" --device-budget $budget --record "$walk"
 fi
 length=$(tail -n 1 "$walk" | sed 's/.*"t_s": *\([0-9.]*\).*/\1/')
-awk -v length_s="$length" -v seconds="$seconds" '
+awk -v seconds="$seconds" '
   { line = $0; match(line, /"t_s": *[0-9.eE+-]+/); t = substr(line, RSTART + 6, RLENGTH - 6); sub(/^ */, "", t)
     if (t > seconds) next
     lines[n] = line; times[n] = t; ++n; print line }

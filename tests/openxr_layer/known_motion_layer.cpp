@@ -12,8 +12,7 @@
 //   time_invalid_every=N        in every Nth frame XR_ERROR_TIME_INVALID from the first locate
 //   answer_invalid_every=N      every Nth locate outside a frame has no valid pose
 //   jump_at_frame=N             100 ms after that frame LOCAL_FLOOR's origin jumps by a metre, which is announced; then
-//   a
-//                               change of STAGE is announced, an hour ahead
+//                               a change of STAGE is announced, an hour ahead
 #include <openxr/openxr_loader_negotiation.h>
 #include <time.h>
 

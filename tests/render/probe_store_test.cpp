@@ -25,6 +25,17 @@ class ProbeStoreTest : public test::GpuTest {
     });
     return work.copied_bytes;
   }
+  // Uploads and evictions, at every stage of what a level goes through; then all that is left is settled.
+  void evict_sooner_or_later(ProbeStore& store, const test::ProbeRoom& levels) {
+    for (std::uint32_t k = 0; k < 20; ++k) {
+      store.upload(levels.upload(k % 2));
+      for (std::uint32_t wait = 0; wait < k; ++wait) frame(store);
+      store.evict(0, k % 2);
+      frame(store);
+    }
+    store.settle();
+    frame(store);
+  }
   // Class of the answer to one ray from the room's middle.
   BatchAnswer ask(const ProbeStore& store) {
     const WorldRay ray{{0.0, 1.4, 0.0}, {0.1, 0.05, -1.0}};
@@ -201,14 +212,7 @@ TEST_F(ProbeStoreTest, CopiesApartKeepToTheBudgetAndShowWhenTheyHaveArrived) {
 TEST_F(ProbeStoreTest, AnEvictionWhileCopiesRunApartIsSafe) {
   ProbeStore store(device, room.grid, room.probe_count(),
                    {.upload_bytes_per_frame = 10000, .always_stage = true, .copy_apart = true});
-  for (std::uint32_t k = 0; k < 20; ++k) {
-    store.upload(room.upload(k % 2));
-    for (std::uint32_t wait = 0; wait < k; ++wait) frame(store);
-    store.evict(0, k % 2);
-    frame(store);
-  }
-  store.settle();
-  frame(store);
+  evict_sooner_or_later(store, room);
   EXPECT_EQ(store.level_shown(0), -1);
   EXPECT_TRUE(store.idle());
   EXPECT_EQ(store.device_bytes(), 0u);
@@ -358,14 +362,7 @@ TEST_F(ProbeStoreTest, AnEvictionWhilePyramidsAreBuiltIsSafe) {
   for (const bool apart : {false, true}) {
     ProbeStore store(device, room.grid, room.probe_count(),
                      {.build_bytes_per_frame = 20000, .always_stage = apart, .copy_apart = apart});
-    for (std::uint32_t k = 0; k < 20; ++k) {
-      store.upload(open.upload(k % 2));
-      for (std::uint32_t wait = 0; wait < k; ++wait) frame(store);
-      store.evict(0, k % 2);
-      frame(store);
-    }
-    store.settle();
-    frame(store);
+    evict_sooner_or_later(store, open);
     EXPECT_TRUE(store.idle());
     EXPECT_EQ(store.device_bytes(), 0u);
   }

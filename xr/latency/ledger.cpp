@@ -12,8 +12,7 @@ constexpr std::array<QuantityDefinition, 9> kDefinitions{{
     {"frame", "ns", "wait_end(n) - wait_end(n-1): from one frame's start to the next one's."},
     {"cpu_busy", "ns",
      "wait_end to end_end, less the time blocked on a swapchain image, on the device or for its queue. The ledger's "
-     "own "
-     "questions come after it. Rendered frames only."},
+     "own questions come after it. Rendered frames only."},
     {"cpu_wait", "ns",
      "Time that the frame thread stands in its wait for the frame (runtime_wait_begin and _end are those of the "
      "runtime's call, which may be made ahead on a thread of its own)."},

@@ -94,8 +94,7 @@ class Ledger {
   std::vector<FrameRecord> frames_;
 };
 
-// How long rooms and levels took from first wanted to first drawable.
-// Of every level that was waited for: from first wanted to handed to the device.
+// How long rooms and levels took from first wanted to first drawable: of every one that was waited for, and in short.
 Histogram need_to_resident_histogram(const StreamingFacts& facts);
 struct NeedToResident {
   std::uint64_t count = 0;

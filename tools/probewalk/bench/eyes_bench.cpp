@@ -66,9 +66,8 @@ class EyesTracer {
       timer_.begin(commands, 0);
       tracer_.record(commands, constants_.address(), options.extent_px);
       timer_.end(commands, 0);
+      timer_.bring(commands);
     });
-    // In commands of its own, after the pass.
-    run_commands(device_, [&](VkCommandBuffer commands) { timer_.bring(commands); });
     const GpuInterval interval = timer_.read(0, clock_);
     return interval.end_ns - interval.begin_ns;
   }
