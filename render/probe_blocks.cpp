@@ -50,10 +50,10 @@ VkDeviceAddress ProbeBlocks::place(const Device& device, ProbeArena& arena, cons
 
 ProbeBlocks::ProbeBlocks(const Device& device, ProbeArena& arena, const std::vector<DeviceProbe>& probes, bool stage) {
   for (const DeviceProbe& probe : probes) {
-    const WordRange gap = probe.pyramid_is_open ? pyramid_range(probe.record.n_log2) : WordRange{};
+    const WordRange gap = probe.pyramid_is_open ? pyramid_range(probe.record) : WordRange{};
     const VkDeviceAddress geometry = place(device, arena, probe.geometry, gap, stage);
     addresses_.push_back({geometry, place(device, arena, probe.radiance, {}, stage)});
-    if (probe.pyramid_is_open) open_pyramids_.push_back({geometry, probe.record.n_log2});
+    if (probe.pyramid_is_open) open_pyramids_.push_back({geometry, probe.record.n_log2, (probe.record.flags & kFlagTiledSamples) != 0});
   }
 }
 

@@ -19,6 +19,7 @@ class PyramidJob {
   struct Site {
     VkDeviceAddress geometry = 0;
     std::uint32_t n_log2 = 0;
+    bool has_tiled_samples = false;
   };
 
   PyramidJob() = default;

@@ -43,6 +43,7 @@ std::vector<std::uint32_t> tracing_constants(std::initializer_list<std::uint32_t
   }
   constants.resize(kOpeningsConstant, 0);
   constants.push_back(shared_openings ? 1 : 0);
+  constants.push_back(choice.samples != DeviceSamples::kFloat ? 1 : 0);
   return constants;
 }
 

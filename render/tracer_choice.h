@@ -29,7 +29,7 @@ std::span<const std::uint32_t> tracing_module(const TracerChoice& choice, std::s
 
 // Specialisation constants of a tracing shader: `own` from 0 on, at most four of them, then the choice's from 4 on, as
 // shaders/shared/tracer_glsl.h numbers them, then whether views' rays share what their first probes are chosen from
-// (shaders/openings.glsl).
+// (shaders/openings.glsl), and whether samples can be in tiles.
 std::vector<std::uint32_t> tracing_constants(std::initializer_list<std::uint32_t> own, const TracerChoice& choice,
                                              bool shared_openings = false);
 

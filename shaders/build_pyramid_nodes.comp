@@ -13,7 +13,7 @@ layout(local_size_x = kNodesGroup) in;
 shared uint bent[2];  // by entry: no plane
 
 void main() {
-  int n = 1 << int(level_of >> 8), level = int(level_of & 255u), side = n >> level, size = 1 << level;
+  int n = 1 << pushed_n_log2(), level = pushed_level(), side = n >> level, size = 1 << level;
   int word = int(first + gl_WorkGroupID.x);
   int half_group = kNodesGroup / 2, part = int(gl_LocalInvocationID.x) / half_group;
   int lane = int(gl_LocalInvocationID.x) % half_group;
@@ -22,7 +22,7 @@ void main() {
   barrier();
 
   // What an entry is made of is one node of the level below.
-  int finer = pyramid_node(n, level - 2, entry.x << 2, entry.y << 2);
+  int finer = pyramid_node(pushed_begin(), n, level - 2, entry.x << 2, entry.y << 2);
   uint code = 0u, flags = kEntryPlanar | kEntryPlanar << 16;
   for (int k = 0; k < 8; ++k) {
     uint pair = pw_word(geometry, finer + k);
@@ -33,7 +33,7 @@ void main() {
   if (planar) {
     CornerPlane plane = corner_plane(n, size, side, entry);
     for (int k = lane; k < (size + 1) * (size + 1) && planar; k += half_group) {
-      planar = vertex_on_plane(plane, k % (size + 1), k / (size + 1));
+      planar = vertex_on_plane(n, plane, k % (size + 1), k / (size + 1));
     }
   }
   if (!planar) atomicOr(bent[part], 1u);
@@ -43,6 +43,6 @@ void main() {
   if (int(gl_LocalInvocationID.x) == half_group) bent[1] = code | (bent[1] == 0u ? kEntryPlanar : 0u);
   barrier();
   if (gl_LocalInvocationID.x == 0u) {
-    PwWords(geometry).v[pyramid_begin(n) + pyramid_offset(n, level) + word] = bent[0] | bent[1] << 16;
+    PwWords(geometry).v[pushed_begin() + pyramid_offset(n, level) + word] = bent[0] | bent[1] << 16;
   }
 }

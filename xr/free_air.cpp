@@ -1,7 +1,6 @@
 #include "xr/free_air.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 
 namespace probewalk {
@@ -19,10 +18,10 @@ void FreeAir::add(std::uint32_t probe, const DeviceProbe& words) {
   Sight sight;
   sight.position_m = glm::dvec3(words.record.position_hi_m) + glm::dvec3(words.record.position_lo_m);
   sight.n = 1 << words.record.n_log2;
-  // The block of a probe's geometry begins with w at its vertices (shaders/shared/probe_layout.h).
-  const auto vertices = static_cast<std::size_t>(sight.n + 1) * static_cast<std::size_t>(sight.n + 1);
-  sight.w.reserve(vertices);
-  for (std::size_t i = 0; i < vertices; ++i) sight.w.push_back(std::bit_cast<float>(words.geometry.at(i)));
+  sight.w.reserve(static_cast<std::size_t>(sight.n + 1) * static_cast<std::size_t>(sight.n + 1));
+  for (int j = 0; j <= sight.n; ++j) {
+    for (int i = 0; i <= sight.n; ++i) sight.w.push_back(sample_of(words, i, j));
+  }
   const std::lock_guard lock(mutex_);
   sights_.at(probe) = std::move(sight);
 }

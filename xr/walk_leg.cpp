@@ -37,7 +37,7 @@ WalkLeg::WalkLeg(const WalkOptions& options, const Pack& pack, const Display& di
       settle_(options.settle.value_or(source_.kind() == "offscreen" && !books.left_ns)),
       rooms_(pack, *display.device,
              {options.budget_bytes, options.loader_threads, options.cache, options.report.has_value(), !settle_,
-              options.pyramids, options.open_chunks},
+              options.pyramids, options.open_chunks, options.choice.samples},
              progress),
       baselines_(options.choice.needs_maps() && options.maps != nullptr
                      ? std::make_unique<BaselineStore>(*display.device, *options.maps, options.choice)

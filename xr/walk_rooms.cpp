@@ -18,23 +18,25 @@ constexpr double kVelocitySmoothing_s = 0.2;  // head bob and sway average out
 constexpr double kJump_m = 0.5;               // further in one frame is a teleport, not a motion
 
 // What may be held of a stated budget. The reserve gives way to what a walk cannot do without.
-double usable_share(const Manifest& manifest, std::uint64_t budget_bytes) {
+double usable_share(const Manifest& manifest, std::uint64_t budget_bytes, DeviceSamples samples) {
   std::uint64_t largest_probe = 0;
   for (const RoomEntry& room : manifest.rooms) {
     for (const LevelEntry& level : room.levels) {
-      if (room.probe_count > 0) largest_probe = std::max(largest_probe, level.bytes_device / room.probe_count);
+      if (room.probe_count > 0) {
+        largest_probe = std::max(largest_probe, level.stated_bytes(samples) / room.probe_count);
+      }
     }
   }
   const double share = ProbeArena::usable_share(budget_bytes, largest_probe);
-  const double least = static_cast<double>(minimum_budget(manifest) + 1) / static_cast<double>(budget_bytes);
+  const double least = static_cast<double>(minimum_budget(manifest, {.samples = samples}) + 1) / static_cast<double>(budget_bytes);
   return std::max(share, std::min(least, 1.0));
 }
 
 // What all rooms at all levels can take.
-std::uint64_t bytes_of_all(const Manifest& manifest) {
+std::uint64_t bytes_of_all(const Manifest& manifest, DeviceSamples samples) {
   std::uint64_t padding = 0;
   for (const RoomEntry& room : manifest.rooms) padding += room.levels.size() * room.probe_count * kMostPadding_bytes;
-  return manifest.bytes_device() + padding;
+  return manifest.bytes_device(samples) + padding;
 }
 
 ProbeStoreOptions store_options(const WalkRoomsOptions& options, const Manifest& manifest) {
@@ -42,8 +44,8 @@ ProbeStoreOptions store_options(const WalkRoomsOptions& options, const Manifest&
                           .fade_frames = options.fade_levels ? WalkRooms::kLevelFadeFrames : 0};
   // A stated budget is taken at once: no other can have it later. Without one memory is taken as it is needed.
   if (options.budget_bytes != kUnlimitedBudget) {
-    const double share = usable_share(manifest, options.budget_bytes);
-    const auto all = static_cast<std::uint64_t>(static_cast<double>(bytes_of_all(manifest)) / share);
+    const double share = usable_share(manifest, options.budget_bytes, options.samples);
+    const auto all = static_cast<std::uint64_t>(static_cast<double>(bytes_of_all(manifest, options.samples)) / share);
     store.arena_bytes = std::min(options.budget_bytes, all);
   }
   return store;
@@ -54,13 +56,14 @@ StreamerOptions streamer_options(const WalkRoomsOptions& options, const Manifest
   StreamerOptions streamer;
   if (options.budget_bytes != kUnlimitedBudget) {
     streamer.residency.budget_bytes = options.budget_bytes;
-    streamer.residency.usable_share = usable_share(manifest, options.budget_bytes);
+    streamer.residency.usable_share = usable_share(manifest, options.budget_bytes, options.samples);
   } else {
     streamer.residency.budget_bytes = device.free_bytes();
   }
   // Threads that wait for a far source do not compute.
   streamer.loader.threads = std::max(options.threads, source.parallel_reads());
   streamer.loader.decoders = options.threads;
+  streamer.loader.samples = options.samples;
   streamer.loader.pyramids =
       options.pyramids.value_or(device.info().is_software ? PyramidMaker::kHost : PyramidMaker::kDevice);
   streamer.residency.most_loads = std::max(streamer.residency.most_loads, source.parallel_reads());

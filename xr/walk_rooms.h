@@ -31,6 +31,7 @@ struct WalkRoomsOptions {
   bool fade_levels = false;  // a finer level takes over gradually
   std::optional<PyramidMaker> pyramids;  // empty = who is quicker at it
   ChunkOpener open_chunks;   // empty = open_source
+  DeviceSamples samples = kDefaultSamples;
 };
 
 class WalkRooms {

@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 #include <tbb/global_control.h>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <span>
@@ -361,9 +363,21 @@ class BakeJob {
       progress_.advance(texels);
     }
     const std::vector<std::byte> chunk = encode_level(level, entry);
+    const std::uint64_t tiled = size.geometry < kLeastTiledSide ? 0 : tiled_bytes(decode_chunk(chunk, "the chunk just made"));
+    if (tiled < entry.bytes_device) entry.bytes_tiled = tiled;
     entry.bytes_disk = chunk.size();
     entry.chunk = writer.add_chunk(chunk);
     return entry;
+  }
+
+  // On the device, of the samples that a reader gets.
+  static std::uint64_t tiled_bytes(const RoomLevel& level) {
+    std::atomic<std::uint64_t> words = 0;
+    tbb::parallel_for(std::size_t{0}, level.probes.size(), [&](std::size_t k) {
+      const DeviceProbe probe = build_device_probe(level.probes[k], PyramidMaker::kDevice, DeviceSamples::kTiled);
+      words += probe.geometry.size() + probe.radiance.size();
+    });
+    return words * sizeof(std::uint32_t);
   }
 
   // Quantised where that is asked for, or is smaller and stays within its bounds: looked at in what a reader will see.

@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 
+#include "content/probe/tiled_samples.h"
 #include "shaders/shared/baseline_layout.h"
 #include "shaders/shared/probe_layout.h"
 #include "shaders/shared/selection_rules.h"
@@ -37,6 +38,7 @@ struct TracerChoice {
   int epsilon_rule = kEpsilonFixed;
   bool reject_backfaces = false;   // marches: surfaces whose stored normal faces along the ray are no hits
   bool backward_trace = false;     // marches: after such a surface the ray is followed backward from there (thesis 7.2)
+  DeviceSamples samples = kDefaultSamples;  // how probes lie in memory; answers are the same to the bit
   BaselineConstants baseline{};    // without addresses: those are filled in by who traces
 
   bool is_baseline() const { return method != kMethodOat && method != kMethodOatFlat; }

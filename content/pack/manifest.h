@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "content/bake/placement.h"
+#include "content/probe/tiled_samples.h"
 #include "content/scene/space.h"
 
 namespace probewalk {
@@ -22,9 +23,14 @@ struct LevelEntry {
   std::uint32_t geometry_size = 0;
   std::uint32_t radiance_size = 0;
   std::uint64_t bytes_disk = 0;
-  std::uint64_t bytes_device = 0;
+  std::uint64_t bytes_device = 0;  // with samples as floats
   double error = -1.0;  // measured; negative = not measured (null in JSON)
   bool quantised = false;  // its geometry's samples are (sample_tiles.h); the feature "quantised-samples" then
+  std::uint64_t bytes_tiled = 0;  // on the device with samples in tiles; 0 = not stated: bytes_device or less
+
+  std::uint64_t stated_bytes(DeviceSamples samples) const {
+    return samples == DeviceSamples::kTiled && bytes_tiled > 0 ? bytes_tiled : bytes_device;
+  }
 };
 
 struct RoomEntry {
@@ -72,7 +78,8 @@ struct Manifest {
   std::vector<std::string> warnings;
 
   std::uint64_t bytes_disk() const;    // sum over chunks
-  std::uint64_t bytes_device() const;  // with every level resident
+  // With every level resident.
+  std::uint64_t bytes_device(DeviceSamples samples = kDefaultSamples) const;
 };
 
 // Parses and checks; `source` names the text in errors. Throws BadInput.

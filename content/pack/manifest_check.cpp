@@ -93,6 +93,8 @@ class Checker {
             "room {}: bytes_disk {} is out of range", room, level.bytes_disk);
     require(level.bytes_device <= PackLimits::kDeviceBytesPerLevel, "room {}: bytes_device {} is out of range", room,
             level.bytes_device);
+    require(level.bytes_tiled <= level.bytes_device, "room {}: bytes_tiled {} is more than bytes_device {}", room,
+            level.bytes_tiled, level.bytes_device);
     require(std::isfinite(level.error), "room {}: error is not finite", room);
     if (coarser == nullptr) return;
     require(level.geometry_size >= coarser->geometry_size && level.radiance_size >= coarser->radiance_size &&

@@ -4,7 +4,7 @@
 //   light_statement, light {samples, bounces, cache_spacing_m, seed, recentred} (may be absent), credits, bounds,
 //   features [name], radiance_scale, exposure_ev, rooms [{id, name, bounds, origin_m, first_probe, probe_count,
 //           levels [{chunk, geometry_size, radiance_size, bytes_disk, bytes_device, error (null = not measured),
-//           quantised (absent = false)}]}],
+//           bytes_tiled (absent = not stated), quantised (absent = false)}]}],
 //   portals [{rooms [a, b], polygon [[x, y, z]]}], probe_positions_m [[x, y, z]],
 //   grid {origin_m, spacing_m, dims, probe [index]},
 //   floor {origin_m [x, z], cell_m, columns [x, z], node_count, nodes (text, floor_code.h)},
@@ -49,6 +49,7 @@ json to_json(const LevelEntry& level) {
              {"bytes_disk", level.bytes_disk},
              {"bytes_device", level.bytes_device},
              {"error", level.error < 0.0 ? json(nullptr) : json(level.error)}};
+  if (level.bytes_tiled > 0) entry["bytes_tiled"] = level.bytes_tiled;
   if (level.quantised) entry["quantised"] = true;
   return entry;
 }
@@ -201,6 +202,7 @@ LevelEntry read_level(const Member& m) {
     level.error = m["error"].number();
     if (level.error < 0.0) m["error"].refuse("is negative");
   }
+  if (m.has("bytes_tiled")) level.bytes_tiled = m["bytes_tiled"].integer<std::uint64_t>();
   if (m.has("quantised")) level.quantised = m["quantised"].boolean();
   return level;
 }
@@ -389,10 +391,10 @@ std::uint64_t Manifest::bytes_disk() const {
   return bytes;
 }
 
-std::uint64_t Manifest::bytes_device() const {
+std::uint64_t Manifest::bytes_device(DeviceSamples samples) const {
   std::uint64_t bytes = 0;
   for (const RoomEntry& room : rooms) {
-    for (const LevelEntry& level : room.levels) bytes += level.bytes_device;
+    for (const LevelEntry& level : room.levels) bytes += level.stated_bytes(samples);
   }
   return bytes;
 }

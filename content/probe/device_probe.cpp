@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <optional>
 
 #include "content/probe/pyramid.h"
 #include "content/probe/tracer_f32.h"
@@ -12,6 +13,11 @@
 namespace probewalk {
 
 namespace {
+
+// Tiles are decoded at every look-up: for less than a third of the bytes, as in foliage, that is not worth it.
+constexpr bool is_worth_tiling(std::uint64_t tiled_words, std::uint64_t float_words) {
+  return 3 * tiled_words <= 2 * float_words;
+}
 
 constexpr float kRounding = 2e-6f;  // keeps l_min_m inside the empty octahedron whatever the rounding
 
@@ -156,11 +162,9 @@ std::size_t count_cut_cells(const ProbeGeometry& geometry) {
 }
 
 std::size_t count_planar_entries(const DeviceProbe& probe) {
-  const auto n_log2 = static_cast<int>(probe.record.n_log2);
-  const auto begin = static_cast<std::size_t>(f32::pyramid_begin(1 << n_log2));
-  const auto end = begin + static_cast<std::size_t>(f32::pyramid_words(n_log2));
+  const WordRange pyramid = pyramid_range(probe.record);
   std::size_t count = 0;
-  for (std::size_t k = begin; k < end; ++k) {
+  for (std::size_t k = pyramid.first; k < pyramid.first + pyramid.count; ++k) {
     count += static_cast<std::size_t>(std::popcount(probe.geometry[k] & (kEntryPlanar | kEntryPlanar << 16)));
   }
   return count;
@@ -168,10 +172,21 @@ std::size_t count_planar_entries(const DeviceProbe& probe) {
 
 std::uint64_t device_probe_bytes(int n, int r, std::size_t cut_cells) {
   const std::uint64_t n2 = static_cast<std::uint64_t>(n) * n;
-  const std::uint64_t vertices = static_cast<std::uint64_t>(f32::pyramid_begin(n));
+  const std::uint64_t vertices = static_cast<std::uint64_t>(f32::pyramid_begin(n, false));
   const auto pyramid = static_cast<std::uint64_t>(f32::pyramid_words(log2_of(n)));
   const std::uint64_t radiance = mip_chain_texels(r) + static_cast<std::uint64_t>(r) * r / 2;
   return 4 * (vertices + pyramid + n2 / 16 + kCutRecordWords * cut_cells + radiance);
+}
+
+std::uint64_t least_device_probe_bytes(int n, int r) {
+  const std::uint64_t most = device_probe_bytes(n, r, 0);
+  if (n < kLeastTiledSide) return most;
+  return most - 4 * static_cast<std::uint64_t>(f32::pyramid_begin(n, false) - f32::pyramid_begin(n, true));
+}
+
+float sample_of(const DeviceProbe& probe, int i, int j) {
+  const ProbeRecord record = record_in_memory(probe);
+  return f32::sample_w(record.geometry_address, f32::has_tiled_samples(record), 1 << record.n_log2, i, j);
 }
 
 std::uint64_t device_block_bytes(const std::vector<std::uint32_t>& words) {
@@ -183,26 +198,35 @@ std::uint64_t device_bytes(const DeviceProbe& probe) {
   return device_block_bytes(probe.geometry) + device_block_bytes(probe.radiance);
 }
 
-WordRange pyramid_range(std::uint32_t n_log2) {
-  return {static_cast<std::size_t>(f32::pyramid_begin(1 << n_log2)),
-          static_cast<std::size_t>(f32::pyramid_words(static_cast<int>(n_log2)))};
+WordRange pyramid_range(const ProbeRecord& record) {
+  const auto n_log2 = static_cast<int>(record.n_log2);
+  return {static_cast<std::size_t>(f32::pyramid_begin(1 << n_log2, f32::has_tiled_samples(record))),
+          static_cast<std::size_t>(f32::pyramid_words(n_log2))};
 }
 
-DeviceProbe build_device_probe(const ProbeMap& map, PyramidMaker maker) {
+DeviceProbe build_device_probe(const ProbeMap& map, PyramidMaker maker, DeviceSamples samples) {
   const ProbeGeometry& g = map.geometry;
   const int n = g.n;
   const auto cells = static_cast<std::size_t>(n) * n;
-  const WordRange pyramid = pyramid_range(static_cast<std::uint32_t>(log2_of(n)));
-  const std::size_t masks = pyramid.first + pyramid.count, records = masks + cells / 16;
   DeviceProbe probe;
+  probe.record.n_log2 = static_cast<std::uint32_t>(log2_of(n));
+  std::optional<DeviceTiles> tiles;
+  const bool always = samples == DeviceSamples::kTiledAlways;
+  if (samples != DeviceSamples::kFloat && n >= (always ? kDeviceTileSide : kLeastTiledSide)) {
+    tiles = tile_samples(g.w, n);
+    if (!always && !is_worth_tiling(tiles->words(), g.w.size())) tiles.reset();
+  }
+  if (tiles) probe.record.flags |= kFlagTiledSamples;
+  const WordRange pyramid = pyramid_range(probe.record);
+  const std::size_t masks = pyramid.first + pyramid.count, records = masks + cells / 16;
   std::vector<std::uint32_t>& words = probe.geometry;
-  words.reserve(records + 1024);
+  words.reserve(records + 1024 + (tiles ? tiles->floats.size() : 0));
   words.resize(records);
-  std::memcpy(words.data(), g.w.data(), g.w.size() * sizeof(float));
+  if (!tiles) std::memcpy(words.data(), g.w.data(), g.w.size() * sizeof(float));
 
   // Every vertex is a cell's, so that the largest w of all is that of the cells without cuts or less.
   std::uint32_t top_bits = 0;  // of what is not negative the bits are in the order of the floats
-  for (std::size_t k = 0; k < g.w.size(); ++k) top_bits = std::max(top_bits, words[k]);
+  for (const float w : g.w) top_bits = std::max(top_bits, std::bit_cast<std::uint32_t>(w));
   auto top = std::bit_cast<float>(top_bits);
   std::uint32_t cut_cells = 0;
   for (std::size_t first = 0; first < cells; first += kCellsAtOnce) {
@@ -220,8 +244,12 @@ DeviceProbe build_device_probe(const ProbeMap& map, PyramidMaker maker) {
       top = std::max(top, std::max({cell.w(0, 0), cell.w(1, 0), cell.w(0, 1), cell.w(1, 1)}) * kCutExtension);
     }
   }
+  if (tiles) {
+    place_tiles(*tiles, static_cast<std::uint32_t>(words.size()), words);
+    words.insert(words.end(), tiles->floats.begin(), tiles->floats.end());
+  }
   if (maker == PyramidMaker::kHost) {
-    build_pyramid(n, words);
+    build_pyramid(n, g.w, words, pyramid.first);
   } else {
     probe.pyramid_is_open = pyramid.count > 0;
   }
@@ -236,9 +264,8 @@ DeviceProbe build_device_probe(const ProbeMap& map, PyramidMaker maker) {
   split_position(g.position_m, probe.record.position_hi_m, probe.record.position_lo_m);
   // All sky: nothing anywhere, any radius is empty; a finite one keeps the tracer's arithmetic finite.
   probe.record.l_min_m = top > 0.0f ? (1.0f - kRounding) / top : 1e15f;
-  probe.record.n_log2 = static_cast<std::uint32_t>(log2_of(n));
   probe.record.r_log2 = radiance.r > 0 ? static_cast<std::uint32_t>(log2_of(radiance.r)) : 0;
-  probe.record.flags = cut_cells != 0 ? 1u : 0u;
+  if (cut_cells != 0) probe.record.flags |= kFlagCuts;
   return probe;
 }
 

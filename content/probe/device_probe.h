@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "content/probe/probe_map.h"
+#include "content/probe/tiled_samples.h"
 #include "shaders/shared/probe_layout.h"
 
 namespace probewalk {
@@ -23,21 +24,27 @@ enum class PyramidMaker {
   kDevice,  // for the device alone
 };
 
-DeviceProbe build_device_probe(const ProbeMap& map, PyramidMaker maker = PyramidMaker::kHost);
+DeviceProbe build_device_probe(const ProbeMap& map, PyramidMaker maker = PyramidMaker::kHost,
+                               DeviceSamples samples = DeviceSamples::kFloat);
+
+// w at vertex (i, j) of a probe's map, from its words.
+float sample_of(const DeviceProbe& probe, int i, int j);
 
 // Where the pyramid lies among the words of a geometry block.
 struct WordRange {
   std::size_t first = 0;
   std::size_t count = 0;
 };
-WordRange pyramid_range(std::uint32_t n_log2);
+WordRange pyramid_range(const ProbeRecord& record);
 
 // Points the record at the words in this process's memory, so that the C++ tracers can run on it.
 // The words must outlive the record's use.
 ProbeRecord record_in_memory(const DeviceProbe& probe);
 
-// Bytes of the words of a probe of n cells and r texels a side.
+// Bytes of the words of a probe of n cells and r texels a side, with samples as floats: the most that it takes.
 std::uint64_t device_probe_bytes(int n, int r, std::size_t cut_cells);
+// The least that a probe without cuts takes with samples in tiles.
+std::uint64_t least_device_probe_bytes(int n, int r);
 // Bytes that a probe's two blocks take on the device, where each begins at a multiple of kDeviceBlockAlignment.
 inline constexpr std::uint64_t kDeviceBlockAlignment = 32;
 std::uint64_t device_block_bytes(const std::vector<std::uint32_t>& words);

@@ -32,13 +32,13 @@ ProbeSet::ProbeSet(std::vector<DeviceProbe> probes, const ProbeGrid& grid)
   grid_.probes_address = host_address(records_.data());
 }
 
-ProbeSet ProbeSet::read(const Pack& pack, std::size_t level) {
+ProbeSet ProbeSet::read(const Pack& pack, std::size_t level, DeviceSamples samples) {
   const Manifest& manifest = pack.manifest();
   std::vector<DeviceProbe> probes;
   for (std::size_t room = 0; room < manifest.rooms.size(); ++room) {
     const std::size_t finest = manifest.rooms[room].levels.size() - 1;
     for (const ProbeMap& map : pack.read_level(room, std::min(level, finest)).probes) {
-      probes.push_back(build_device_probe(map));
+      probes.push_back(build_device_probe(map, PyramidMaker::kHost, samples));
     }
   }
   return ProbeSet(std::move(probes), manifest.grid);

@@ -16,7 +16,8 @@ class ProbeSet {
   // Probes in the order of the grid's indices.
   ProbeSet(std::vector<DeviceProbe> probes, const ProbeGrid& grid);
   // Reads a pack's rooms at their finest level, or at most at `level`.
-  static ProbeSet read(const Pack& pack, std::size_t level = ~std::size_t{0});
+  static ProbeSet read(const Pack& pack, std::size_t level = ~std::size_t{0},
+                       DeviceSamples samples = DeviceSamples::kFloat);
 
   ProbeSet(ProbeSet&&) = default;
   ProbeSet& operator=(ProbeSet&&) = default;

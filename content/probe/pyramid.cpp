@@ -17,16 +17,18 @@ struct Cells {
   std::vector<char> is_cut;
 };
 
-Cells read_cells(int n, std::span<const std::uint32_t> words) {
+Cells read_cells(int n, std::span<const float> w, std::span<const std::uint32_t> words, std::size_t begin) {
   const auto side = static_cast<std::size_t>(n);
-  const auto masks =
-      static_cast<std::size_t>(f32::pyramid_begin(n) + f32::pyramid_words(std::countr_zero(static_cast<unsigned>(n))));
+  const std::size_t masks =
+      begin + static_cast<std::size_t>(f32::pyramid_words(std::countr_zero(static_cast<unsigned>(n))));
   Cells cells{std::vector<std::uint32_t>(side * side), std::vector<char>(side * side)};
   for (std::size_t j = 0; j < side; ++j) {
-    const std::uint32_t* const row = &words[j * (side + 1)];
-    const std::uint32_t* const next = row + side + 1;
+    const float* const row = &w[j * (side + 1)];
+    const float* const next = row + side + 1;
+    const auto bits = [](float each) { return std::bit_cast<std::uint32_t>(each); };
     for (std::size_t i = 0; i < side; ++i) {
-      cells.maxima[j * side + i] = std::max(std::max(row[i], row[i + 1]), std::max(next[i], next[i + 1]));
+      cells.maxima[j * side + i] =
+          std::max(std::max(bits(row[i]), bits(row[i + 1])), std::max(bits(next[i]), bits(next[i + 1])));
     }
   }
   for (std::size_t first = 0; first < side * side; first += 32) {
@@ -54,10 +56,9 @@ std::vector<std::uint32_t> halved(const std::vector<std::uint32_t>& fine, std::s
 
 // Whether w of every vertex of the square of `size` cells with its corner next to the map's centre at vertex (x0, y0),
 // running along (su, sv), lies on the plane through three of its corners.
-bool is_planar(int n, std::span<const std::uint32_t> words, int x0, int y0, int su, int sv, int size) {
+bool is_planar(int n, std::span<const float> samples, int x0, int y0, int su, int sv, int size) {
   const auto w = [&](int a, int b) {
-    return std::bit_cast<float>(
-        words[static_cast<std::size_t>(y0 + sv * b) * (n + 1) + static_cast<std::size_t>(x0 + su * a)]);
+    return samples[static_cast<std::size_t>(y0 + sv * b) * (n + 1) + static_cast<std::size_t>(x0 + su * a)];
   };
   const float per_step = 1.0f / static_cast<float>(size), corner = w(0, 0);
   const float along_u = (w(size, 0) - corner) * per_step, along_v = (w(0, size) - corner) * per_step;
@@ -71,10 +72,10 @@ bool is_planar(int n, std::span<const std::uint32_t> words, int x0, int y0, int 
 
 }  // namespace
 
-void build_pyramid(int n, std::span<std::uint32_t> words) {
+void build_pyramid(int n, std::span<const float> w, std::span<std::uint32_t> words, std::size_t pyramid) {
   const int top = f32::pyramid_top(std::countr_zero(static_cast<unsigned>(n)));
   if (top < 1) return;
-  Cells cells = read_cells(n, words);
+  Cells cells = read_cells(n, w, words, pyramid);
   std::vector<std::uint32_t> maxima = std::move(cells.maxima);
   std::vector<char> bent = std::move(cells.is_cut);  // by entry of the level before: no plane
   int side = n;
@@ -87,7 +88,7 @@ void build_pyramid(int n, std::span<std::uint32_t> words) {
     side /= 2;
     const int size = 1 << level, parts = level == 1 ? 2 : 4, fine_side = side * parts;
     std::vector<char> bent_here(static_cast<std::size_t>(side) * side);
-    const auto begin = static_cast<std::size_t>(f32::pyramid_begin(n) + f32::pyramid_offset(n, level));
+    const std::size_t begin = pyramid + static_cast<std::size_t>(f32::pyramid_offset(n, level));
     std::fill_n(words.begin() + static_cast<std::ptrdiff_t>(begin), bent_here.size() / 2, 0u);
     for (int y = 0; y < side; ++y) {
       for (int x = 0; x < side; ++x) {
@@ -99,7 +100,7 @@ void build_pyramid(int n, std::span<std::uint32_t> words) {
         const std::size_t index = static_cast<std::size_t>(y) * side + x;
         if (planar) {
           const int su = x >= side / 2 ? 1 : -1, sv = y >= side / 2 ? 1 : -1;
-          planar = is_planar(n, words, (su > 0 ? x : x + 1) * size, (sv > 0 ? y : y + 1) * size, su, sv, size);
+          planar = is_planar(n, w, (su > 0 ? x : x + 1) * size, (sv > 0 ? y : y + 1) * size, su, sv, size);
         }
         bent_here[index] = !planar;
         const std::uint32_t entry = pyramid_code(maxima[index]) | (planar ? kEntryPlanar : 0u);

@@ -12,6 +12,7 @@
 
 #define PW_OUT(type) type&
 #define PW_INOUT(type) type&
+#define PW_MAY_TILE true
 
 namespace probewalk::PW_REAL_NAMESPACE {
 
@@ -66,3 +67,4 @@ inline const BaselineRecord& pw_baseline(const BaselineConstants& constants, int
 
 #undef PW_OUT
 #undef PW_INOUT
+#undef PW_MAY_TILE

@@ -140,6 +140,7 @@ struct Recipe {
   int n;
   double scale_m;
   std::function<ProbeGeometry()> make;
+  DeviceSamples samples = kDefaultSamples;
 };
 
 const std::vector<Recipe>& recipes() {
@@ -169,12 +170,12 @@ const std::vector<Recipe>& recipes() {
        [] {
          return baked(furnished_room(), {-1.83, 1.2, -1.57}, 64);
        }},
-      {PlaceId::kLeast, "samples at limits", 32, 1.0, [] { return at_limits(); }},
-      {PlaceId::kSteps, "samples of 16 bits", 64, 1.0, [] { return in_steps(room(64)); }},
-      {PlaceId::kQuantised, "quantised room", 128, 1.0, [] { return quantised(room(128)); }},
-      {PlaceId::kQuantisedGrille, "quantised grille", 128, 1.0, [] { return quantised(grille(128)); }},
-      {PlaceId::kQuantisedLimits, "quantised tiles at limits", 64, 1.0, [] { return quantised_limits(); }},
-      {PlaceId::kTorn, "cuts at limits", 64, 1.0, [] { return torn(); }},
+      {PlaceId::kLeast, "samples at limits", 32, 1.0, [] { return at_limits(); }, DeviceSamples::kTiledAlways},
+      {PlaceId::kSteps, "samples of 16 bits", 64, 1.0, [] { return in_steps(room(64)); }, DeviceSamples::kTiledAlways},
+      {PlaceId::kQuantised, "quantised room", 128, 1.0, [] { return quantised(room(128)); }, DeviceSamples::kTiledAlways},
+      {PlaceId::kQuantisedGrille, "quantised grille", 128, 1.0, [] { return quantised(grille(128)); }, DeviceSamples::kTiledAlways},
+      {PlaceId::kQuantisedLimits, "quantised tiles at limits", 64, 1.0, [] { return quantised_limits(); }, DeviceSamples::kTiledAlways},
+      {PlaceId::kTorn, "cuts at limits", 64, 1.0, [] { return torn(); }, DeviceSamples::kTiledAlways},
   };
   return all;
 }
@@ -195,7 +196,7 @@ int place_cells(PlaceId id) {
 std::unique_ptr<Place> make_place(PlaceId id) {
   const Recipe& r = recipe(id);
   ProbeGeometry geometry = r.make();
-  DeviceProbe device = build_device_probe(ProbeMap{geometry, {}});
+  DeviceProbe device = build_device_probe(ProbeMap{geometry, {}}, PyramidMaker::kHost, r.samples);
   BruteForceProbe brute(geometry);
   auto place =
       std::make_unique<Place>(Place{r.name, r.scale_m, std::move(geometry), std::move(device), {}, std::move(brute)});

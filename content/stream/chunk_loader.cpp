@@ -24,7 +24,9 @@ ChunkLoader::ChunkLoader(const Manifest& manifest, const ChunkSource& source, De
     : manifest_(manifest),
       source_(source),
       deliver_(std::move(deliver)),
-      queue_capacity_(options.queue_capacity), pyramids_(options.pyramids),
+      queue_capacity_(options.queue_capacity),
+      pyramids_(options.pyramids),
+      samples_(options.samples),
       decoders_(std::max(options.decoders, 1u)) {
   for (unsigned k = 0; k < std::max(options.threads, 1u); ++k) {
     threads_.emplace_back([this, k](std::stop_token stop) { work(stop, k); });
@@ -151,7 +153,7 @@ void ChunkLoader::decode(const Request& request, LoadResult& result, const std::
       result.end = LoadResult::End::kCancelled;
       return;
     }
-    loaded.probes.push_back(build_device_probe(map, pyramids_));
+    loaded.probes.push_back(build_device_probe(map, pyramids_, samples_));
     result.bytes_device += device_bytes(loaded.probes.back());
     map = ProbeMap{};  // a room at its finest need not be in memory twice
   }

@@ -66,6 +66,7 @@ struct LoaderOptions {
   // Who builds the pyramids of what is delivered: a GPU does it beside its frames, for less than the bytes cost. Where a
   // processor plays the device, the decoders are ten times as quick.
   PyramidMaker pyramids = PyramidMaker::kHost;
+  DeviceSamples samples = kDefaultSamples;
 };
 
 class ChunkLoader {
@@ -108,6 +109,7 @@ class ChunkLoader {
   Deliver deliver_;
   std::size_t queue_capacity_;
   PyramidMaker pyramids_;
+  DeviceSamples samples_;
   std::atomic<std::size_t> depth_{0};
   std::mutex queue_mutex_;
   std::condition_variable_any queue_filled_;

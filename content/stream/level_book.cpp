@@ -28,23 +28,23 @@ bool has_errors(const RoomEntry& room) {
 
 }  // namespace
 
-std::uint64_t planned_bytes(const RoomEntry& room, const LevelEntry& level) {
-  const auto bytes = [&](std::uint64_t cut_cells) {
-    return room.probe_count *
-           device_probe_bytes(static_cast<int>(level.geometry_size), static_cast<int>(level.radiance_size), cut_cells);
-  };
+std::uint64_t planned_bytes(const RoomEntry& room, const LevelEntry& level, DeviceSamples samples) {
+  const bool tiled = samples == DeviceSamples::kTiled;
+  const int n = static_cast<int>(level.geometry_size), r = static_cast<int>(level.radiance_size);
   const std::uint64_t cells = std::uint64_t{level.geometry_size} * level.geometry_size;
-  return std::clamp(level.bytes_device, bytes(0), bytes(cells)) + room.probe_count * kMostPadding_bytes;
+  const std::uint64_t least = room.probe_count * (tiled ? least_device_probe_bytes(n, r) : device_probe_bytes(n, r, 0));
+  const std::uint64_t most = room.probe_count * device_probe_bytes(n, r, cells);
+  return std::clamp(level.stated_bytes(samples), least, most) + room.probe_count * kMostPadding_bytes;
 }
 
-LevelBook::LevelBook(const Manifest& manifest) {
+LevelBook::LevelBook(const Manifest& manifest, DeviceSamples samples) {
   for (const RoomEntry& room : manifest.rooms) {
     first_.push_back(static_cast<std::uint32_t>(entries_.size()));
     const bool by_error = has_errors(room);
     double coarser = -1.0;
     for (const LevelEntry& level : room.levels) {
       Entry entry;
-      entry.bytes = planned_bytes(room, level);
+      entry.bytes = planned_bytes(room, level, samples);
       entry.bytes_disk = level.bytes_disk;
       const double sides = 0.5 * (std::log2(level.geometry_size) + std::log2(level.radiance_size));
       entry.quality = by_error ? std::log2(room.levels.front().error / level.error) : sides;

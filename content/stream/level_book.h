@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "content/pack/manifest.h"
+#include "content/probe/tiled_samples.h"
 
 namespace probewalk {
 
@@ -24,12 +25,13 @@ enum class LevelStatus : std::uint8_t {
 
 // Device bytes to set aside for a level of a room before it has been decoded: what the pack states, kept within what
 // maps of its size can take.
-std::uint64_t planned_bytes(const RoomEntry& room, const LevelEntry& level);
+std::uint64_t planned_bytes(const RoomEntry& room, const LevelEntry& level,
+                            DeviceSamples samples = kDefaultSamples);
 
 class LevelBook {
  public:
   // Every level absent, with its planned bytes. The manifest outlives the book.
-  explicit LevelBook(const Manifest& manifest);
+  explicit LevelBook(const Manifest& manifest, DeviceSamples samples = kDefaultSamples);
 
   std::uint32_t rooms() const { return static_cast<std::uint32_t>(first_.size() - 1); }
   std::uint32_t levels(std::uint32_t room) const { return first_[room + 1] - first_[room]; }

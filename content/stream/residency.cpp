@@ -40,7 +40,7 @@ std::uint64_t minimum_budget(const Manifest& manifest, const ResidencyOptions& o
     std::uint64_t needed = 0;
     for (const RoomGraph::Reach& reach : graph.reach(room, glm::dvec3(0.0), options.coarse_portals)) {
       const RoomEntry& entry = manifest.rooms[reach.room];
-      needed += entry.levels.empty() ? 0 : planned_bytes(entry, entry.levels.front());
+      needed += entry.levels.empty() ? 0 : planned_bytes(entry, entry.levels.front(), options.samples);
     }
     most = std::max(most, needed);
   }

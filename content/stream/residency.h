@@ -26,6 +26,7 @@ struct ResidencyOptions {
   std::uint64_t budget_bytes = kUnlimitedBudget;  // device memory for probes
   // Of the budget: what may be held. The rest is lost between pieces of memory that come and go.
   double usable_share = 1.0;
+  DeviceSamples samples = kDefaultSamples;  // with which levels lie there
   std::uint32_t coarse_portals = 3;
   std::uint32_t fine_portals = 2;
   double patience_s = 3.0;        // a room reached this much later counts 1/e as much

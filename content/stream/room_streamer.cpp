@@ -18,6 +18,12 @@ std::int64_t now_ns() {
 constexpr std::int64_t kSourceRetry_ns = 250'000'000, kSourceRetryMost_ns = 8'000'000'000;
 constexpr std::int64_t kDamageRetry_ns = 5'000'000'000, kDamageRetryMost_ns = 60'000'000'000;
 constexpr std::int64_t kTellAgain_ns = 30'000'000'000;
+ResidencyOptions residency_options(const StreamerOptions& options) {
+  ResidencyOptions residency = options.residency;
+  residency.samples = options.loader.samples;
+  return residency;
+}
+
 constexpr std::uint32_t kSettleTries = 5;  // what waits for everything waits for so many tries of a source
 
 }  // namespace
@@ -27,8 +33,8 @@ RoomStreamer::RoomStreamer(const Manifest& manifest, const ChunkSource& source, 
     : manifest_(manifest),
       evict_(std::move(evict)),
       options_(options),
-      book_(manifest),
-      residency_(manifest, options.residency),
+      book_(manifest, options.loader.samples),
+      residency_(manifest, residency_options(options)),
       room_seen_(manifest.rooms.size(), false),
       loader_(manifest, source, std::move(upload), options.loader) {}
 

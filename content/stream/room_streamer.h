@@ -18,7 +18,7 @@ namespace probewalk {
 
 struct StreamerOptions {
   ResidencyOptions residency;
-  LoaderOptions loader;
+  LoaderOptions loader;              // whose samples the residency plans with, too
   std::uint32_t retire_updates = 3;  // updates until what was evicted is surely freed: frames in flight + 1
   bool keep_loads = false;           // for a report: remember every load
 };

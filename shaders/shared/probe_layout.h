@@ -2,8 +2,20 @@
 // index in them is our own: nothing that a pack says is used as an address.
 //
 // Geometry block of a probe of n = 2^n_log2 cells a side, in 32-bit words:
-//   (n+1)^2            w at the vertices, row-major, float bits; exactly 0 = sky
-//   (padding)          up to a multiple of 8 words
+//   samples            w at the vertices; exactly 0 = sky. As floats:
+//     (n+1)^2            float bits, row-major
+//     (padding)          up to a multiple of 8 words
+//                      or, where flags bit 1 is set, tile by tile in fewer bits:
+//     (n/8+1)^2 * 12     tiles of 8 x 8 cells, row-major; a tile holds all its cells' 9 x 9 vertices. Of those in the
+//                        last row and column there is only the first vertex:
+//       [0]                w at its first vertex, float bits
+//       [1]                key: bits 0..3 how many octaves finer than the last place of [0] the unit is; the rest: slope
+//                          along x, in 1/8 unit a vertex. Or bits 0..3 are kTileOfFloats; the rest: word of the block
+//                          where the tile's samples lie as floats
+//       [2]                slope along y
+//       [3..11]            rows: for each of the 9 vertices 3 bits, low ones first; bits 27..31 are signed and common to all
+//                      w = ([0] in units + ((slope_x x + slope_y y) >> 3) + common + own) * unit
+//     (padding)          up to a multiple of 8 words
 //   pyramid            levels 1, 3, 5 .. up to n_log2-3, level l has (n >> l)^2 entries of 16 bits, in nodes of 4 x 4
 //                      entries (8 words, so that one read of 32 aligned bytes serves two levels of a binary pyramid);
 //                      nodes row-major, entries row-major in their node, the even one in the low half. An entry stands
@@ -20,6 +32,7 @@
 //         bits 4..6 high triangle (corners (1,1), (1,0), (0,1); edges 01, 12, 20)
 //     [2..4] low, [5..7] high triangle: per corner the surface's slopes dw per cell step along U and V, snorm16 pair in
 //         units of kSlopeClamp * w(corner)
+//   81 per tile of floats: w at its vertices, float bits, row-major
 //
 // Radiance block of a probe of r = 2^r_log2 texels a side:
 //   mip chain          E5B9G9R9 words, finest first, down to 1x1
@@ -44,6 +57,14 @@ PW_CONSTANT int kStartLevel = 5;
 // walk without a pyramid.
 PW_CONSTANT int kWithoutPlanes = 16;
 PW_CONSTANT int kCutRecordWords = 8;
+// Flags of a ProbeRecord.
+PW_CONSTANT pw_uint kFlagCuts = 1u;
+PW_CONSTANT pw_uint kFlagTiledSamples = 2u;
+// Cells along the side of a tile of samples: as many as an entry of the pyramid's level 3 stands for.
+PW_CONSTANT int kDeviceTileLog2 = 3;
+PW_CONSTANT int kDeviceTileSide = 8;
+PW_CONSTANT int kDeviceTileWords = 12;
+PW_CONSTANT pw_uint kTileOfFloats = 15u;
 // Largest half float, which pictures are made of. Radiance is stored times radiance_scale, so that only a source
 // brighter than any texel meets it.
 PW_CONSTANT float kPictureMax = 65504.0f;
@@ -70,7 +91,7 @@ struct ProbeRecord {
   pw_uvec2 radiance_address;
   pw_uvec2 coarse_radiance_address;  // of the level that this one replaces, while coarse_share > 0
   pw_uint r_log2;                    // bits 0..7; bits 8..15: that of the coarse radiance
-  pw_uint flags;                     // bit 0: has cuts; bits 16..31: coarse_share, in 1/65535 of the radiance
+  pw_uint flags;                     // bit 0: has cuts; bit 1: samples in tiles; bits 16..31: coarse_share, in 1/65535 of the radiance
 };
 
 // The building's probe grid: vertex (x, y, z) at origin + spacing * (x, y, z) is served by probe table[(z dy + y) dx +

@@ -3,6 +3,7 @@
 //   real, real2, real3, ivec3           the arithmetic
 //   pw_word(address, index)             a 32-bit word of device memory
 //   pw_word_real(address, index)        the same as a float, widened to real
+//   PW_MAY_TILE                         false where no probe has its samples in tiles
 //   pw_probe(grid, index)               a ProbeRecord
 //   PW_OUT(type), PW_INOUT(type)        parameter directions
 // and may define PW_BASELINES, for a tracer that walks by another method than its own; then it also provides
@@ -44,7 +45,7 @@ PW_FUNCTION real nearest_vertex_w(ProbeRecord probe, real3 x) {
   int n = 1 << int(probe.n_log2);
   real2 uv = (octahedral_uv(x) + real2(1, 1)) * (real(n) * real(0.5)) + real2(0.5, 0.5);
   int i = min(max(int(uv.x), 0), n), j = min(max(int(uv.y), 0), n);
-  return pw_word_real(probe.geometry_address, j * (n + 1) + i);
+  return sample_w(probe.geometry_address, has_tiled_samples(probe), n, i, j);
 }
 
 // Does the probe see the point x (relative to it)? 2: clearly in front of its surface. 1: in front of, or within the
@@ -58,8 +59,9 @@ PW_FUNCTION int start_test(ProbeRecord probe, real3 x, real margin, PW_INOUT(pw_
   int level = min(PW_START_LEVEL, pyramid_top(int(probe.n_log2)));
   if (level > 0) {
     int i = min(max(int(uv.x), 0), n - 1) >> level, j = min(max(int(uv.y), 0), n - 1) >> level;
+    int node = pyramid_node(pyramid_begin(n, has_tiled_samples(probe)), n, level, i, j);
     lookups += 1u;
-    if (w > entry_maximum(pyramid_entry(probe.geometry_address, pyramid_node(n, level, i, j), i, j))) return 2;
+    if (w > entry_maximum(pyramid_entry(probe.geometry_address, node, i, j))) return 2;
   }
   lookups += 1u;
   real surface = nearest_vertex_w(probe, x);

@@ -11,6 +11,7 @@
 // bit for bit; with its planes the class of the answer stays and its distance moves by less than kPlaneError of itself.
 #include "tracer_pieces.h"
 #include "tracer_pyramid.h"
+#include "tracer_samples.h"
 
 // Sizes of what can be walked: origins up to here from the probe, directions no longer and no shorter than these.
 // Beyond them sums and reciprocals might not be finite.
@@ -23,7 +24,9 @@ PW_FUNCTION bool walk_segment(ProbeRecord probe, OctantSegment s, real t_start, 
                               PW_INOUT(WalkState) state) {
   const int n = 1 << int(probe.n_log2);
   const int half_n = n >> 1;
-  const int masks = pyramid_begin(n) + pyramid_words(int(probe.n_log2));
+  const bool tiled = has_tiled_samples(probe);
+  const int pyramid = pyramid_begin(n, tiled);
+  const int masks = pyramid + pyramid_words(int(probe.n_log2));
   const int records = masks + n * n / 16;
   const pw_uvec2 geometry = probe.geometry_address;
   const real texel = real(2) / real(n);
@@ -126,7 +129,7 @@ PW_FUNCTION bool walk_segment(ProbeRecord probe, OctantSegment s, real t_start, 
       int gx = s.side.x > 0 ? (half_n >> level) + (ix >> level) : (half_n >> level) - 1 - (ix >> level);
       int gy = s.side.y > 0 ? (half_n >> level) + (iy >> level) : (half_n >> level) - 1 - (iy >> level);
       if (level > 0) {
-        int node = pyramid_node(n, level, gx, gy);
+        int node = pyramid_node(pyramid, n, level, gx, gy);
         if (node != node_read) state.lookups += 1u;
         node_read = node;
         pw_uint entry = pyramid_entry(geometry, node, gx, gy);
@@ -136,18 +139,17 @@ PW_FUNCTION bool walk_segment(ProbeRecord probe, OctantSegment s, real t_start, 
         if (planar) break;
         if (!passed) level = max(level - 2, 0);
       } else {
-        int corner = (half_n + s.side.y * iy) * (n + 1) + half_n + s.side.x * ix;
-        int row = s.side.y * (n + 1);
-        w00 = pw_word_real(geometry, corner);
-        w10 = pw_word_real(geometry, corner + s.side.x);
-        w01 = pw_word_real(geometry, corner + row);
-        w11 = pw_word_real(geometry, corner + row + s.side.x);
+        CornerSamples corners = corner_samples(geometry, tiled, n, half_n + s.side.x * ix, half_n + s.side.y * iy, s.side, 1);
+        w00 = corners.w00;
+        w10 = corners.w10;
+        w01 = corners.w01;
+        w11 = corners.w11;
         state.lookups += 1u;
         real maximum = max(max(w00, w10), max(w01, w11));
         passed = maximum <= real(0) || w_low > maximum * real(kCutExtension);
         record = -1;
         if (!passed) {
-          if ((probe.flags & 1u) != 0u) {
+          if ((probe.flags & kFlagCuts) != 0u) {
             int cell = gy * n + gx;
             pw_uint mask = pw_word(geometry, masks + 2 * (cell >> 5));
             pw_uint bit = 1u << pw_uint(cell & 31);
@@ -176,10 +178,19 @@ PW_FUNCTION bool walk_segment(ProbeRecord probe, OctantSegment s, real t_start, 
     if (planar) {
       // One plane stands for all the entry's cells: that through the corners next to the map's centre.
       int corner_x = (ix >> level) << level, corner_y = (iy >> level) << level, size = 1 << level;
-      int corner = (half_n + s.side.y * corner_y) * (n + 1) + half_n + s.side.x * corner_x;
-      real w = pw_word_real(geometry, corner);
-      real gu = (pw_word_real(geometry, corner + s.side.x * size) - w) / real(size);
-      real gv = (pw_word_real(geometry, corner + s.side.y * size * (n + 1)) - w) / real(size);
+      int x = half_n + s.side.x * corner_x, y = half_n + s.side.y * corner_y;
+      real w, w_u, w_v;
+      if (tiled && size < kDeviceTileSide) {
+        CornerSamples corners = corner_samples(geometry, tiled, n, x, y, s.side, size);
+        w = corners.w00;
+        w_u = corners.w10;
+        w_v = corners.w01;
+      } else {
+        w = pw_word_real(geometry, corner_word(tiled, n, x, y));
+        w_u = pw_word_real(geometry, corner_word(tiled, n, x + s.side.x * size, y));
+        w_v = pw_word_real(geometry, corner_word(tiled, n, x, y + s.side.y * size));
+      }
+      real gu = (w_u - w) / real(size), gv = (w_v - w) / real(size);
       state.lookups += 1u;
       corner_uv = real2(real(corner_x), real(corner_y));
       real2 q0 = s.uv0 + s.d_uv * lambda - corner_uv, q1 = s.uv0 + s.d_uv * exit - corner_uv;

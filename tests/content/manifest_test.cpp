@@ -107,6 +107,18 @@ TEST(Manifest, AnEditIsCalledAnEdit) {
   EXPECT_THAT(refusal(text), HasSubstr("damaged or edited"));
 }
 
+TEST(Manifest, SaysWhatTiledSamplesTakeWhereThatIsKnown) {
+  Manifest manifest = two_rooms();
+  EXPECT_EQ(serialise_manifest(manifest).find("bytes_tiled"), std::string::npos);  // what has none is as it was
+  manifest.rooms[0].levels[1].bytes_tiled = 1700;
+  const Manifest back = parse_manifest(serialise_manifest(manifest), "pack.json");
+  EXPECT_EQ(back.rooms[0].levels[1].stated_bytes(DeviceSamples::kTiled), 1700u);
+  EXPECT_EQ(back.rooms[0].levels[1].stated_bytes(DeviceSamples::kFloat), 3200u);
+  EXPECT_EQ(back.rooms[0].levels[0].stated_bytes(DeviceSamples::kTiled), 1600u);
+  EXPECT_EQ(back.bytes_device(DeviceSamples::kTiled), 1600u + 1700u + 1600u);
+  EXPECT_EQ(back.bytes_device(DeviceSamples::kFloat), 1600u + 3200u + 1600u);
+}
+
 // A reader that does not know quantised samples must meet the feature's name before it meets a chunk.
 TEST(Manifest, QuantisedLevelsAreNamedAsAFeature) {
   Manifest manifest = two_rooms();
@@ -174,6 +186,8 @@ TEST(Manifest, BadMembersAreNamed) {
       {"/rooms/0/levels/0/geometry_size", 32, "coarse to fine"},
       {"/rooms/0/levels/0/bytes_disk", 0, "bytes_disk"},
       {"/rooms/0/levels/0/bytes_device", 1ull << 60, "bytes_device"},
+      {"/rooms/0/levels/0/bytes_tiled", 1601, "bytes_tiled 1601 is more than bytes_device 1600"},
+      {"/rooms/0/levels/0/bytes_tiled", -1, "bytes_tiled"},
       {"/rooms/0/levels/0/error", -2.0, "is negative"},
       {"/portals/0/rooms/1", 2, "joins rooms 0 and 2 of 2"},
       {"/portals/0/rooms/1", 0, "joins rooms 0 and 0"},

@@ -309,6 +309,24 @@ TEST(Residency, WhatThePackStatesIsKeptWithinWhatItsMapsCanTake) {
   EXPECT_LE(minimum_budget(m), most + kMostPadding_bytes);
 }
 
+TEST(Residency, PlansWithWhatTiledSamplesTake) {
+  using enum DeviceSamples;
+  Manifest m = row_of_rooms(1);
+  LevelEntry& level = m.rooms[0].levels[0];
+  level.geometry_size = level.radiance_size = 256;
+  level.bytes_device = device_probe_bytes(256, 256, 5000);
+  level.bytes_tiled = least_device_probe_bytes(256, 256) + 100'000;
+  const std::uint64_t padding = m.rooms[0].probe_count * kMostPadding_bytes;
+  EXPECT_EQ(planned_bytes(m.rooms[0], level, kFloat), level.bytes_device + padding);
+  EXPECT_EQ(planned_bytes(m.rooms[0], level, kTiled), level.bytes_tiled + padding);
+  EXPECT_EQ(LevelBook(m, kTiled).bytes({0, 0}), level.bytes_tiled + padding);
+  EXPECT_EQ(minimum_budget(m, {.samples = kTiled}), level.bytes_tiled + padding);
+  level.bytes_tiled = 1;
+  EXPECT_EQ(planned_bytes(m.rooms[0], level, kTiled), least_device_probe_bytes(256, 256) + padding);
+  level.bytes_tiled = 0;
+  EXPECT_EQ(planned_bytes(m.rooms[0], level, kTiled), level.bytes_device + padding) << "until it is known";
+}
+
 TEST(Residency, LevelsThatTakeMoreThanStatedNeitherBreakTheBudgetNorTheWalk) {
   const Manifest m = row_of_rooms(8);
   for (const std::uint64_t budget : {7 * kCoarse + kFine, 8 * kCoarse + 3 * kFine}) {

@@ -1,13 +1,16 @@
 // Chunks: the bytes as they are, and the probes that they resemble, packed soundly. Rays are traced over whatever the
 // decoder lets through: they must end with one of the three answers and with finite light.
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "content/error.h"
 #include "content/pack/chunk_layout.h"
 #include "content/pack/pack_io.h"
 #include "content/pack/tile_plane.h"
+#include "content/probe/host_address.h"
 #include "content/probe/probe_set.h"
+#include "content/probe/tiled_samples.h"
 #include "content/probe/tracer_f32.h"
 #include "fuzz/fuzz_target.h"
 #include "fuzz/plain_chunk.h"
@@ -33,7 +36,25 @@ ProbeSet set_of(const RoomLevel& level) {
   return ProbeSet(std::move(probes), grid);
 }
 
+// In tiles, as devices hold them, samples are the same to the bit.
+void tile(const ProbeGeometry& geometry) {
+  const int n = geometry.n;
+  if (n < kDeviceTileSide) return;
+  const DeviceTiles tiles = tile_samples(geometry.w, n);
+  std::vector<std::uint32_t> words(tiles.tiles.size());
+  place_tiles(tiles, static_cast<std::uint32_t>(words.size()), words);
+  words.insert(words.end(), tiles.floats.begin(), tiles.floats.end());
+  for (int j = 0; j <= n; ++j) {
+    for (int i = 0; i <= n; ++i) {
+      const float w = f32::sample_w(host_address(words.data()), true, n, i, j);
+      const float should = geometry.w[static_cast<std::size_t>(j * (n + 1) + i)];
+      require(std::bit_cast<std::uint32_t>(w) == std::bit_cast<std::uint32_t>(should), "a tile's sample");
+    }
+  }
+}
+
 void trace(const RoomLevel& level) {
+  for (const ProbeMap& map : level.probes) tile(map.geometry);
   const ProbeSet set = set_of(level);
   const TraceConstants dials = default_dials(1.0);
   const int probes = static_cast<int>(set.probes().size());

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <initializer_list>
 #include <glm/glm.hpp>
 #include <utility>
 #include <vector>
@@ -54,14 +55,16 @@ struct ProbeRoom {
   ProbeGrid grid;
   std::vector<DeviceProbe> probes;
 
-  explicit ProbeRoom(int n = 64, int r = 32) {
+  // `samples` of the probes by turns, from the first on.
+  explicit ProbeRoom(int n = 64, int r = 32, std::initializer_list<DeviceSamples> samples = {DeviceSamples::kFloat}) {
     const RayScene rays(scene);
     grid.origin_m = {-1.6, 0.9, -1.1};
     grid.spacing_m = {3.1, 1.1, 2.4};
     grid.dims = {2, 2, 2};
     for (int k = 0; k < 8; ++k) {
       const glm::dvec3 position = grid.origin_m + grid.spacing_m * glm::dvec3(k & 1, k >> 1 & 1, k >> 2);
-      probes.push_back(build_device_probe({bake_geometry(rays, position, n), pattern_radiance(rays, position, r)}));
+      probes.push_back(build_device_probe({bake_geometry(rays, position, n), pattern_radiance(rays, position, r)},
+                                          PyramidMaker::kHost, samples.begin()[static_cast<std::size_t>(k) % samples.size()]));
       grid.probe.push_back(static_cast<std::uint32_t>(k));
     }
   }

@@ -315,7 +315,7 @@ TEST_F(ProbeStoreTest, BuildsOpenPyramidsWithinABudgetBeforeALevelShows) {
   test::ProbeRoom open(64, 8);
   std::uint64_t pyramid_bytes = 0;
   for (DeviceProbe& probe : open.probes) {
-    const WordRange pyramid = pyramid_range(probe.record.n_log2);
+    const WordRange pyramid = pyramid_range(probe.record);
     std::fill_n(probe.geometry.begin() + static_cast<std::ptrdiff_t>(pyramid.first), pyramid.count, 0xffffffffu);
     probe.pyramid_is_open = true;
     pyramid_bytes += pyramid.count * sizeof(std::uint32_t);

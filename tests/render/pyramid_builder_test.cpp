@@ -69,13 +69,13 @@ class PyramidBuilderTest : public test::GpuTest {
     vkCmdPipelineBarrier2(commands, &dependency);
   }
 
-  static void expect_host_words(const ProbeMap& map, const std::vector<std::uint32_t>& words, const std::string& name) {
-    const std::vector<std::uint32_t> host = build_device_probe(map).geometry;
+  static void expect_host_words(const ProbeMap& map, const std::vector<std::uint32_t>& words, const std::string& name,
+                                DeviceSamples samples = DeviceSamples::kFloat) {
+    const std::vector<std::uint32_t> host = build_device_probe(map, PyramidMaker::kHost, samples).geometry;
     ASSERT_EQ(words.size(), host.size()) << name;
     const auto differs = std::mismatch(words.begin(), words.end(), host.begin()).first;
-    EXPECT_EQ(words, host)
-        << name << ": from word " << differs - words.begin() << " on; the pyramid begins at "
-        << pyramid_range(static_cast<std::uint32_t>(std::countr_zero(static_cast<unsigned>(map.geometry.n)))).first;
+    EXPECT_EQ(words, host) << name << ": from word " << differs - words.begin() << " on; the pyramid begins at "
+                           << pyramid_range(build_device_probe(map, PyramidMaker::kHost, samples).record).first;
   }
 
   const PyramidBuilder builder{device};
@@ -106,6 +106,23 @@ TEST_F(PyramidBuilderTest, BuildsWhatIsSeenOfARoomToTheBit) {
   }
   const std::vector<std::vector<std::uint32_t>> words = built(probes, kAll);
   for (std::size_t k = 0; k < maps.size(); ++k) expect_host_words(maps[k], words[k], "room");
+}
+
+TEST_F(PyramidBuilderTest, BuildsOverTiledSamplesToTheBit) {
+  for (const int n : {64, 256}) {
+    const std::vector<test::RoughMap> maps = test::rough_maps(n);
+    const auto samples_of = [](std::size_t k) {
+      return k % 4 == 3 ? DeviceSamples::kFloat : DeviceSamples::kTiledAlways;
+    };
+    std::vector<DeviceProbe> probes;
+    for (std::size_t k = 0; k < maps.size(); ++k) {
+      probes.push_back(build_device_probe(maps[k].map, PyramidMaker::kDevice, samples_of(k)));
+    }
+    const std::vector<std::vector<std::uint32_t>> words = built(probes, kAll);
+    for (std::size_t k = 0; k < maps.size(); ++k) {
+      expect_host_words(maps[k].map, words[k], maps[k].name, samples_of(k));
+    }
+  }
 }
 
 TEST_F(PyramidBuilderTest, StepsKeepToTheirBudgetAndChangeNothing) {

@@ -5,6 +5,8 @@
 
 #include <chrono>
 #include <cstdio>
+#include <cstring>
+#include <optional>
 
 #include "content/probe/tracer_f32.h"
 #include "gpu_test.h"
@@ -59,6 +61,53 @@ TEST_F(RayBatchTest, AnswersAsTheSameTextInCpp) {
   EXPECT_EQ(other_t, 0);
   EXPECT_EQ(other_radiance, 0);
   EXPECT_GT(hits, 15000);
+}
+
+// Samples in tiles, floats and both resident at once give the same answers to the bit, on the device and on the host.
+TEST_F(RayBatchTest, AnswersAlikeHoweverSamplesLie) {
+  constexpr float kSpread_rad = 0.01f;
+  using enum DeviceSamples;
+  const auto rays = random_rays(20000);
+  const auto ask = [&](const test::ProbeRoom& of, std::optional<std::uint32_t> split, DeviceSamples pipeline) {
+    ProbeStore holder(device, of.grid, of.probe_count());
+    if (split) {  // two rooms
+      holder.upload({0, 0, 0, {of.probes.begin(), of.probes.begin() + *split}});
+      holder.upload({1, 0, *split, {of.probes.begin() + *split, of.probes.end()}});
+    } else {
+      holder.upload(of.upload());
+    }
+    holder.settle();
+    EXPECT_EQ(holder.device_bytes(), ProbeStore::bytes_of(of.probes));
+    TracerSetup setup;
+    setup.choice.samples = pipeline;
+    return std::pair(RayBatch(device, setup).trace(holder, dials, rays, kSpread_rad), holder.device_bytes());
+  };
+  const test::ProbeRoom floats(256, 32), tiled(256, 32, {kTiledAlways}), both(256, 32, {kTiledAlways, kFloat});
+  for (const DeviceProbe& probe : tiled.probes) ASSERT_NE(probe.record.flags & kFlagTiledSamples, 0u);
+  const auto [expected, bytes_floats] = ask(floats, {}, kFloat);
+  const auto expect_same = [&](const std::vector<BatchAnswer>& answers, const char* what) {
+    ASSERT_EQ(answers.size(), expected.size());
+    EXPECT_EQ(std::memcmp(answers.data(), expected.data(), expected.size() * sizeof(BatchAnswer)), 0) << what;
+  };
+  const auto [of_tiles, bytes_tiles] = ask(tiled, {}, kTiled);
+  expect_same(of_tiles, "tiles");
+  EXPECT_LT(bytes_tiles, bytes_floats);
+  const auto [of_both, bytes_both] = ask(both, 3, kTiled);
+  expect_same(of_both, "both");
+  EXPECT_LT(bytes_tiles, bytes_both);
+  EXPECT_LT(bytes_both, bytes_floats);
+  expect_same(ask(floats, {}, kTiled).first, "floats by a pipeline that can read tiles");
+  const ProbeSet set = tiled.on_cpu(), plain = floats.on_cpu();
+  for (std::size_t k = 0; k < rays.size(); ++k) {
+    glm::vec3 hi, lo;
+    split_position(rays[k].origin_m, hi, lo);
+    const glm::vec3 d(glm::normalize(rays[k].direction));
+    const f32::RayAnswer host = f32::trace_ray(set.grid(), dials, hi, lo, d, kStartLevel);
+    ASSERT_TRUE(host.cls == expected[k].answer && host.t == expected[k].t_m && host.lookups == expected[k].lookups)
+        << k;
+    const f32::RayAnswer other = f32::trace_ray(plain.grid(), dials, hi, lo, d, kStartLevel);
+    ASSERT_TRUE(host.t == other.t && host.plane == other.plane) << k;
+  }
 }
 
 TEST_F(RayBatchTest, SplitsLongListsAndKeepsTheirOrder) {

@@ -58,7 +58,8 @@ json to_json(const LevelEntry& level) {
   return {{"geometry_size", level.geometry_size},
           {"radiance_size", level.radiance_size},
           {"bytes_disk", level.bytes_disk},
-          {"bytes_device", level.bytes_device},
+          {"bytes_device", level.stated_bytes(kDefaultSamples)},
+          {"bytes_device_float_samples", level.bytes_device},
           {"error", level.error < 0.0 ? json(nullptr) : json(level.error)},
           {"samples", level.quantised ? "quantised" : "float"},
           {"chunk", level.chunk}};
@@ -117,7 +118,8 @@ json to_json(const Manifest& manifest) {
           {"tour", {{"poses", manifest.tour.size()}, {"length_m", tour_length_m(manifest)}}},
           {"warnings", manifest.warnings},
           {"bytes_disk", manifest.bytes_disk()},
-          {"bytes_device", manifest.bytes_device()}};
+          {"bytes_device", manifest.bytes_device()},
+          {"bytes_device_float_samples", manifest.bytes_device(DeviceSamples::kFloat)}};
 }
 
 // As a rooms file, whose boxes are in the scene file's own units.
@@ -144,6 +146,12 @@ std::string size_text(std::uint64_t bytes) {
   return fmt::format("{:.1f} MiB", static_cast<double>(bytes) / (1024.0 * 1024.0));
 }
 
+// What levels take as they are kept, and what they would with samples as floats where that is more.
+std::string device_text(std::uint64_t bytes, std::uint64_t bytes_float) {
+  if (bytes == bytes_float) return size_text(bytes);
+  return fmt::format("{} ({} with samples as floats)", size_text(bytes), size_text(bytes_float));
+}
+
 std::string point_text(const glm::dvec3& p) { return fmt::format("{:.2f}, {:.2f}, {:.2f}", p.x, p.y, p.z); }
 
 std::string list_text(const std::vector<std::string>& items, const char* none) {
@@ -167,7 +175,7 @@ void print_room(const Manifest& manifest, std::size_t index) {
   for (std::size_t k = 0; k < room.levels.size(); ++k) {
     const LevelEntry& level = room.levels[k];
     fmt::print("    level {}  geometry {}\u00b2{}, radiance {}\u00b2, {} on disk, {} on the device, error {}\n", k,
-               level.geometry_size, level.quantised ? " (quantised)" : "", level.radiance_size, size_text(level.bytes_disk), size_text(level.bytes_device),
+               level.geometry_size, level.quantised ? " (quantised)" : "", level.radiance_size, size_text(level.bytes_disk), device_text(level.stated_bytes(kDefaultSamples), level.bytes_device),
                level.error < 0.0 ? "not measured" : fmt::format("{:.3g}", level.error));
   }
 }
@@ -187,7 +195,7 @@ void print(const Pack& pack) {
                              m.grid.dims.x, m.grid.dims.y, m.grid.dims.z, m.grid.spacing_m.x, m.grid.spacing_m.y,
                              m.grid.spacing_m.z));
   line("bytes", fmt::format("{} on disk, {} on the device with every level resident", size_text(m.bytes_disk()),
-                            size_text(m.bytes_device())));
+                            device_text(m.bytes_device(), m.bytes_device(DeviceSamples::kFloat))));
   line("exposure", fmt::format("{:.2f} EV", m.exposure_ev));
   line("start", fmt::format("({}), yaw {:.0f} degrees", point_text(m.start.position_m), glm::degrees(m.start.yaw_rad)));
   line("tour", fmt::format("{:.1f} m, {} poses", tour_length_m(m), m.tour.size()));

@@ -125,7 +125,7 @@ void run_trace(const TraceOptions& options, const CommonOptions& common) {
     if (!file) throw BadInput(options.rays + ": cannot be read; give a file of rays, or - for standard input");
     rays = read_rays(file, options.rays);
   }
-  const ProbeSet set = ProbeSet::read(pack);
+  const ProbeSet set = ProbeSet::read(pack, ~std::size_t{0}, choice.samples);
   const std::unique_ptr<Progress> progress = make_progress(common);
   const auto maps = chosen_maps(choice, options.method, pack, std::nullopt, common.threads, *progress);
   const std::vector<Answer> answers =

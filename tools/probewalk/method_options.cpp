@@ -25,6 +25,9 @@ const std::map<std::string, int> kLastResortNames{{"nothing", kLastResortNothing
 const std::map<std::string, int> kEpsilonNames{
     {"fixed", kEpsilonFixed}, {"dynamic", kEpsilonDynamic}, {"angle", kEpsilonAngle}};
 
+const std::map<std::string, DeviceSamples> kSamplesNames{{"tiled", DeviceSamples::kTiled},
+                                                         {"float", DeviceSamples::kFloat}};
+
 constexpr const char* kGroup = "How rays are answered";
 
 bool is_march(int method) {
@@ -75,6 +78,10 @@ void add_method_options(CLI::App& command, MethodOptions& options) {
                            "With --first signed-distance: how much nearness counts beside direction"))
       ->check(CLI::Range(0.0f, 1000.0f));
   group(command.add_option("--max-tries", options.max_tries, "Probes that a ray asks at most"))->check(CLI::Range(1, 16));
+  group(command.add_option("--device-samples", options.samples,
+                           "How geometry lies in the device's memory: tiled (in fewer bits where they suffice) or float; "
+                           "answers are the same to the bit (default: tiled)"))
+      ->transform(CLI::CheckedTransformer(kSamplesNames))->option_text("NAME");
   group(command.add_option("--epsilon-rule", options.epsilon_rule,
                            "Marches: what a surface's thickness goes by: fixed, dynamic, angle"))
       ->transform(CLI::CheckedTransformer(kEpsilonNames))->option_text("NAME");
@@ -106,6 +113,7 @@ TracerChoice chosen_tracer(const MethodOptions& options) {
   if (options.no_retry) rules.retry = 0;
   if (options.no_start_test) rules.start_test = 0;
   if (options.restart) rules.hand_on = 0;
+  choice.samples = options.samples;
   choice.distance_weight = options.distance_weight;
   choice.max_tries = options.max_tries;
   choice.epsilon_rule = options.epsilon_rule.value_or(choice.epsilon_rule);

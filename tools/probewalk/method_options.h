@@ -26,6 +26,7 @@ struct MethodOptions {
   std::optional<int> epsilon_rule;
   std::optional<float> epsilon, epsilon_growth, step_m;
   bool reject_backfaces = false, backward_trace = false;
+  DeviceSamples samples = kDefaultSamples;
 };
 
 // Adds all but --scene.

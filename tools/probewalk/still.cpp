@@ -52,7 +52,7 @@ struct StillDrawer::Impl {
             [this](LoadedLevel&& loaded) {
               store.upload({loaded.room, loaded.level, loaded.first_probe, std::move(loaded.probes)});
             },
-            [this](LevelKey key) { store.evict(key.room, key.level); }) {}
+            [this](LevelKey key) { store.evict(key.room, key.level); }, {.loader = {.samples = choice.samples}}) {}
 
   void load_rooms(glm::dvec3 head_m) {
     const bool is_settled = streamer.settle({.head_m = head_m}, kPatience);

@@ -127,6 +127,32 @@ TEST_F(BakeJob, MakesAWholePackOfTwoLevels) {
   EXPECT_TRUE(lit);
 }
 
+TEST_F(BakeJob, StatesWhatLevelsTakeOnTheDevice) {
+  BakeOptions o = options("stated");
+  o.resolution = 128;
+  o.coarse_resolution = 32;
+  bake_quietly(o);
+  const Pack pack = Pack::open(o.pack);
+  for (std::size_t room = 0; room < pack.manifest().rooms.size(); ++room) {
+    if (pack.manifest().rooms[room].probe_count == 0) continue;
+    for (std::size_t level = 0; level < 2; ++level) {
+      const LevelEntry& entry = pack.manifest().rooms[room].levels[level];
+      const RoomLevel maps = pack.read_level(room, level);
+      for (const DeviceSamples samples : {DeviceSamples::kFloat, DeviceSamples::kTiled}) {
+        std::uint64_t words = 0;
+        for (const ProbeMap& map : maps.probes) {
+          const DeviceProbe probe = build_device_probe(map, PyramidMaker::kHost, samples);
+          words += probe.geometry.size() + probe.radiance.size();
+        }
+        EXPECT_EQ(entry.stated_bytes(samples), words * sizeof(std::uint32_t));
+      }
+      if (level == 0) {
+        EXPECT_EQ(entry.bytes_tiled, 0u) << "maps this small are not tiled";
+      }
+    }
+  }
+}
+
 TEST_F(BakeJob, GivesTheSameBytesTwiceAndWhateverTheThreads) {
   bake_quietly(options("one", 1));
   bake_quietly(options("two", 2));

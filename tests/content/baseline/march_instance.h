@@ -29,6 +29,7 @@ inline pw_uint note_and_read(pw_uvec2 address, int index) {
 
 #define PW_OUT(type) type&
 #define PW_INOUT(type) type&
+#define PW_MAY_TILE true
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wconversion"  // GLSL has no casts that C++ would not warn about
 #pragma GCC diagnostic ignored "-Wfloat-conversion"
@@ -83,3 +84,4 @@ PW_MARCH_INSTANCE_COMMON
 #undef PW_MARCH_INSTANCE_COMMON
 #undef PW_OUT
 #undef PW_INOUT
+#undef PW_MAY_TILE

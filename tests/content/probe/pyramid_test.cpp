@@ -25,10 +25,11 @@ std::vector<Entry> entries_of(const DeviceProbe& probe) {
   std::vector<Entry> entries;
   const pw_uvec2 geometry = record_in_memory(probe).geometry_address;
   const int n_log2 = static_cast<int>(probe.record.n_log2), n = 1 << n_log2;
+  const auto begin = static_cast<int>(pyramid_range(probe.record).first);
   for (int level = 1; level <= f32::pyramid_top(n_log2); level += 2) {
     for (int y = 0; y < n >> level; ++y) {
       for (int x = 0; x < n >> level; ++x) {
-        const pw_uint entry = f32::pyramid_entry(geometry, f32::pyramid_node(n, level, x, y), x, y);
+        const pw_uint entry = f32::pyramid_entry(geometry, f32::pyramid_node(begin, n, level, x, y), x, y);
         entries.push_back({x, y, 1 << level, f32::entry_maximum(entry), (entry & kEntryPlanar) != 0});
       }
     }
@@ -96,7 +97,7 @@ TEST(Pyramid, IsLeftOpenForTheDevice) {
     EXPECT_TRUE(open.pyramid_is_open);
     EXPECT_FALSE(whole.pyramid_is_open);
     EXPECT_EQ(open.record.l_min_m, whole.record.l_min_m);
-    build_pyramid(64, open.geometry);
+    build_pyramid(64, each.map.geometry.w, open.geometry, pyramid_range(open.record).first);
     EXPECT_EQ(open.geometry, whole.geometry) << each.name;
     EXPECT_EQ(open.radiance, whole.radiance);
   }

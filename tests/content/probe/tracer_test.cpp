@@ -39,7 +39,7 @@ TEST(Tracer, EndsWithFiniteNumbersOnAnyBits) {
     DeviceProbe device = build_device_probe(map);
     if (round % 2 == 1) {
       // Worse than any map: samples and pyramid of arbitrary bits, NaN and infinity among them.
-      const int words = f32::pyramid_begin(n) + f32::pyramid_words(4);
+      const int words = f32::pyramid_begin(n, false) + f32::pyramid_words(4);
       for (std::size_t k = 0; k < static_cast<std::size_t>(words); ++k) device.geometry[k] = static_cast<std::uint32_t>(random(0, 4294967296.0));
     }
     const ProbeRecord record = record_in_memory(device);

@@ -17,8 +17,9 @@ std::vector<int> level_sizes(const Manifest& manifest) {
   return sizes;
 }
 
-PackLevel::PackLevel(const Device& device, const Pack& pack, std::size_t level)
-    : probes_(ProbeSet::read(pack, level)),
+PackLevel::PackLevel(const Device& device, const Pack& pack, std::size_t level, DeviceSamples samples)
+    : samples_(samples),
+      probes_(ProbeSet::read(pack, level, samples)),
       store_(device, pack.manifest().grid, static_cast<std::uint32_t>(pack.manifest().probe_positions_m.size())) {
   const std::vector<RoomEntry>& rooms = pack.manifest().rooms;
   for (std::uint32_t room = 0; room < rooms.size(); ++room) {

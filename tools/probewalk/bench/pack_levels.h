@@ -17,12 +17,15 @@ std::vector<int> level_sizes(const Manifest& manifest);
 class PackLevel {
  public:
   // A room that has fewer levels shows its finest. Throws BadInput.
-  PackLevel(const Device& device, const Pack& pack, std::size_t level);
+  PackLevel(const Device& device, const Pack& pack, std::size_t level,
+            DeviceSamples samples = kDefaultSamples);
 
+  DeviceSamples samples() const { return samples_; }
   const ProbeSet& probes() const { return probes_; }
   const ProbeStore& store() const { return store_; }
 
  private:
+  DeviceSamples samples_;
   ProbeSet probes_;
   ProbeStore store_;
 };

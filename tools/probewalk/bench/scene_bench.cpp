@@ -193,9 +193,14 @@ void SceneBench::run_group(const Group& group, const PackLevel& level) {
                                            : fmt::format("{}: resolution {}", report_.name, sizes_[group.level]);
   progress_.begin(stage + ", errors", group.settings.size() * rays_.rays.size(), "rays");
   const std::size_t first = measured_.size();
+  std::unique_ptr<PackLevel> otherwise;  // the same probes with samples as some settings ask for
   for (const Setting& setting : group.settings) {
     check();
-    contenders.push_back(make_probe_contender(device_, level, maps, dials_, setting.choice));
+    const bool as_is = setting.choice.samples == level.samples();
+    if (!as_is && !otherwise) {
+      otherwise = std::make_unique<PackLevel>(device_, pack_, group.level, setting.choice.samples);
+    }
+    contenders.push_back(make_probe_contender(device_, as_is ? level : *otherwise, maps, dials_, setting.choice));
     Contender& contender = *contenders.back();
     Measured measured;
     BenchRow& row = measured.row;

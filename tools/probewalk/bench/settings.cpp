@@ -9,6 +9,9 @@
 namespace probewalk::bench {
 namespace {
 
+constexpr DeviceSamples kOtherSamples =
+    kDefaultSamples == DeviceSamples::kTiled ? DeviceSamples::kFloat : DeviceSamples::kTiled;
+
 struct Variant {
   const char* method;
   void (*change)(TracerChoice&);
@@ -17,6 +20,7 @@ struct Variant {
 // What the product's dials and rules can be set to, one change at a time.
 constexpr Variant kVariants[] = {
     {"oat-flat", [](TracerChoice&) {}},
+    {"oat", [](TracerChoice& c) { c.samples = kOtherSamples; }},
     {"oat", [](TracerChoice& c) { c.rules.start_test = 0; }},
     {"oat", [](TracerChoice& c) { c.rules.retry = 0; }},
     {"oat", [](TracerChoice& c) { c.rules.advance = 0; }},
@@ -91,6 +95,9 @@ const std::vector<Acceleration>& accelerations() {
     return std::vector<Acceleration>{
         {"pyramid", "Nodes of the pyramid of w step over what lies above nothing, instead of cell by cell.", "oat-flat", "",
          "oat", kDefaultSettings},
+        {"samples in tiles", "On the device samples are units in the last place off a plane for 8 x 8 cells, in 3 bits, but for outlines.",
+         "oat", words([](TracerChoice& c) { c.samples = DeviceSamples::kFloat; }), "oat",
+         words([](TracerChoice& c) { c.samples = DeviceSamples::kTiled; })},
         {"start test", "A probe that cannot see where the ray has got to is passed over for one or two look-ups.", "oat",
          words([](TracerChoice& c) { c.rules.start_test = 0; }), "oat", kDefaultSettings},
         {"retry", "A probe that failed is asked again once the ray is known to be free further on.", "oat",
