@@ -122,6 +122,7 @@ bool WalkLeg::frame() {
   FrameTiming timing;
   record.wait = record.runtime_wait = stamped([&] { timing = source_.wait(); });
   if (timing.predicted_display_ns == 0) return true;  // lost while waiting: the next poll says so
+  if (keeps_books_) record.process_cpu_ns = process_cpu_ns();
   record.begin = stamped([&] { source_.begin(timing); });
   record.predicted_display = timing.predicted_display_ns;
   record.period = timing.period_ns;
