@@ -140,7 +140,7 @@ bool WalkLeg::frame() {
   // The frame is the runtime's by now: what is drawn for others holds it up no more.
   if (spectator_ && drawn != 0) {
     spectator_->follow(*books_.head, timing.predicted_display_ns);
-    spectator_->show(*display_.mirror, renderer_, settings_, record);
+    spectator_->show(*display_.mirror, renderer_, settings_, guides(), record);
   }
   if (drawn != 0 && books_.left_ns) note_arrival();
   if (keeps_books_) book(record, drawn);
