@@ -17,6 +17,9 @@
 namespace probewalk {
 namespace {
 
+// A frame this many times as long as the median, or one with a missed refresh before it, is worth a cause.
+constexpr double kStandsOut = 1.05;
+
 const std::string kNone = "<span class=\"soft\">–</span>";
 
 std::string value_text(const QuantitySummary& quantity, std::int64_t value) {
@@ -136,16 +139,14 @@ std::string counts_line(const Run& run, const Summary& summary) {
 
 std::string worst_table(const Summary& summary) {
   if (summary.worst.empty()) return "<p class=\"soft\">No frames to rank.</p>\n";
-  // A cause of several parts names an upload, another room and the like.
-  const auto stands_out = [](const WorstFrame& frame) {
-    return frame.missed > 0 || !frame.stage.empty() || frame.cause.find(';') != std::string::npos;
+  const auto median_ns = static_cast<double>(summary.quantity("frame").histogram.percentile(0.5).value_or(0));
+  const auto stands_out = [&](const WorstFrame& frame) {
+    return frame.missed > 0 || static_cast<double>(frame.frame_ns) > kStandsOut * median_ns;
   };
   if (std::ranges::none_of(summary.worst, stands_out)) {
     const WorstFrame& longest = summary.worst.front();
-    return fmt::format(
-        "<p>None stands out: the longest, frame {}, took {} ms, and none of its stages much more than it takes at the "
-        "median.</p>\n",
-        longest.frame_id, in_ms(longest.frame_ns));
+    return fmt::format("<p>None stands out: the longest, frame {}, took {} ms, within {:.0f} % of the median.</p>\n",
+                       longest.frame_id, in_ms(longest.frame_ns), 100.0 * (kStandsOut - 1.0));
   }
   std::string html =
       "<div class=\"scroll\"><table><tr><th>frame</th><th>frame ms</th><th>CPU busy ms</th><th>GPU busy ms</th>"
