@@ -92,7 +92,7 @@ ledger() {
 }
 
 window-overlay() {
-  Xvfb -displayfd 3 -screen 0 1280x1024x24 -nolisten tcp 3>"$out/display" >/dev/null 2>&1 & local screen=$!
+  Xvfb -displayfd 3 -noreset -screen 0 1280x1024x24 -nolisten tcp 3>"$out/display" >/dev/null 2>&1 & local screen=$!
   for _ in $(seq 100); do [ -s "$out/display" ] && break; sleep 0.1; done
   local status=0
   env -u WAYLAND_DISPLAY DISPLAY=":$(cat "$out/display")" bash -euo pipefail -c \

@@ -265,7 +265,7 @@ TEST(Hands, TheSpectatorSeesWhereATeleportLeads) {
   if (!installed("monado-service") || !installed("Xvfb")) GTEST_SKIP() << "monado-service or Xvfb is not installed";
   const fs::path folder = fresh_folder("hands-spectator");
   ASSERT_EQ(run(folder,
-                "cd '{}' && (Xvfb -displayfd 3 -screen 0 960x540x24 -nolisten tcp 3>display >/dev/null 2>&1 & "
+                "cd '{}' && (Xvfb -displayfd 3 -noreset -screen 0 960x540x24 -nolisten tcp 3>display >/dev/null 2>&1 & "
                 "echo $! >screen-pid)"),
             0);
   for (int i = 0; i < 100 && read_text(folder / "display").empty(); ++i) std::this_thread::sleep_for(100ms);

@@ -61,7 +61,8 @@ std::string walk_with(const fs::path& folder, const std::string& options, const 
   write_room_pack(folder / "room.probes");
   RunResult run;
   std::thread walk([&] {
-    run = run_bash(folder, "Xvfb -displayfd 3 -screen 0 " + std::to_string(kWidth) + "x" + std::to_string(kHeight) +
+    run = run_bash(folder, "Xvfb -displayfd 3 -noreset -screen 0 " + std::to_string(kWidth) + "x" +
+                               std::to_string(kHeight) +
                                "x24 -nolisten tcp 3>display >/dev/null 2>&1 &\nscreen=$!\ntrap 'kill $screen' EXIT\n"
                                "for _ in $(seq 100); do [ -s display ] && break; sleep 0.1; done\n"
                                "export DISPLAY=:$(cat display) XDG_SESSION_TYPE=x11 XDG_CONFIG_HOME=$PWD/config\n"
