@@ -85,8 +85,7 @@ struct FrameRenderer::Impl {
   ~Impl() {
     if (lookups_to_come.valid()) lookups_to_come.wait();
     if (guides_to_come.valid()) guides_to_come.wait();
-    // Not wait_for: a lost device must not throw here.
-    vkDeviceWaitIdle(device.handle());
+    device.wait_idle_or_lost();
     slots.clear();
     vkDestroySemaphore(device.handle(), timeline, nullptr);
   }

@@ -5,8 +5,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <csignal>
 #include <fstream>
 #include <functional>
+#include <future>
 #include <glm/gtc/quaternion.hpp>
 #include <nlohmann/json.hpp>
 #include <numbers>
@@ -16,6 +18,7 @@
 #include "content/image/image.h"
 #include "support/remote_hands.h"
 #include "support/room_pack.h"
+#include "support/threads_of.h"
 #include "tools/run_probewalk.h"
 
 namespace probewalk::test {
@@ -125,18 +128,16 @@ class Play {
   RemoteHands& hands_;
 };
 
-// A walk whose hands follow `script`, and that ends after it. Each has a port of its own.
+// A walk whose hands follow `script`, and that ends after it.
 std::vector<Step> walk_with_hands(const fs::path& folder, const std::string& options,
                                   const std::function<void(Play&)>& script) {
-  static int walks = 0;
-  const auto port = static_cast<std::uint16_t>(20000 + (getpid() * 4 + walks++) % 20000);
+  const std::uint16_t port = RemoteHands::free_port();
   fs::create_directories(folder / "config" / "monado");
   std::ofstream(folder / "config" / "monado" / "config_v0.json")
       << json{{"active", "remote"}, {"remote", {{"version", 0}, {"port", port}, {"view_count", 2}}}};
-  int status = 0;
-  std::thread walk([&] {
-    status = run(folder, walk_in_monado("P_OVERRIDE_ACTIVE_CONFIG=remote PROBEWALK_MONADO_LOG=$PWD/monado.log",
-                                        "--seconds 120 --record walked.jsonl --save-frames pictures " + options));
+  std::future<int> walk = std::async(std::launch::async, [&] {
+    return run(folder, walk_in_monado("P_OVERRIDE_ACTIVE_CONFIG=remote PROBEWALK_MONADO_LOG=$PWD/monado.log",
+                                      "--seconds 120 --record walked.jsonl --save-frames pictures " + options));
   });
   RemoteHands hands;
   const bool connected = hands.connect(port, 20s);
@@ -149,9 +150,15 @@ std::vector<Step> walk_with_hands(const fs::path& folder, const std::string& opt
     await_frames(folder, 5);
     script(play);
   }
-  std::system(fmt::format("kill -INT $(cat '{}/pid')", folder.string()).c_str());
-  walk.join();
-  EXPECT_EQ(WEXITSTATUS(status), 5) << read_text(folder / "stderr") << read_text(folder / "monado.log");
+  pid_t pid = 0;
+  std::ifstream(folder / "pid") >> pid;
+  EXPECT_GT(pid, 0) << read_text(folder / "stderr");
+  if (pid > 0) kill(pid, SIGINT);
+  if (walk.wait_for(60s) != std::future_status::ready) {
+    ADD_FAILURE() << "the walk does not end; its threads:\n" << threads_of(pid);
+    if (pid > 0) kill(pid, SIGKILL);
+  }
+  EXPECT_EQ(WEXITSTATUS(walk.get()), 5) << read_text(folder / "stderr") << read_text(folder / "monado.log");
   return read_walk(folder / "walked.jsonl");
 }
 
@@ -291,6 +298,21 @@ TEST(Hands, OfAScaledAndSeatedWearerFindEyesAndFloorWhereStated) {
   EXPECT_NEAR(stood[1][0].ipd_m, 2 * stood[0][0].ipd_m, 1e-5);
   EXPECT_NEAR(stood[0][1].position_m.x - stood[0][0].position_m.x, 0.3, 1e-4);
   EXPECT_NEAR(stood[1][1].position_m.x - stood[1][0].position_m.x, 0.6, 1e-4);
+}
+
+// What stands at the port may be anybody: whoever does not greet is given up, and the test goes on to say so.
+TEST(RemoteHands, GiveUpWhoeverDoesNotGreet) {
+  const int listener = ::socket(AF_INET, SOCK_STREAM, 0);
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  socklen_t size = sizeof(address);
+  ASSERT_EQ(bind(listener, reinterpret_cast<const sockaddr*>(&address), size), 0);
+  ASSERT_EQ(listen(listener, 4), 0);
+  ASSERT_EQ(getsockname(listener, reinterpret_cast<sockaddr*>(&address), &size), 0);
+  RemoteHands hands;
+  EXPECT_FALSE(hands.connect(ntohs(address.sin_port), 500ms));
+  close(listener);
 }
 
 }  // namespace
