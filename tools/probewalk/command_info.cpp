@@ -138,12 +138,9 @@ void print_rooms_file(const InfoOptions& options, const Manifest& manifest) {
   json rooms = json::array();
   for (const RoomRegion& room : outlined.rooms) {
     json entry{{"id", room.id}, {"name", room.name}};
-    if (room.outline.empty()) {
-      entry["min"] = to_json(room.bounds.lower_m / scale);
-      entry["max"] = to_json(room.bounds.upper_m / scale);
-    } else {
-      entry["floor"] = room.bounds.lower_m.y / scale;
-      entry["ceiling"] = room.bounds.upper_m.y / scale;
+    entry["min"] = to_json(room.bounds.lower_m / scale);
+    entry["max"] = to_json(room.bounds.upper_m / scale);
+    if (!room.outline.empty()) {
       json polygons = json::array();
       for (const PlanLoop& loop : room.outline) {
         json& polygon = polygons.emplace_back(json::array());
@@ -258,7 +255,7 @@ void add_info_command(CLI::App& app, CommonOptions& common) {
       "With --verify every byte is read and decoded; the exit code is 1 when a chunk is damaged, and each damaged chunk\n"
       "is named with its room and level. A manifest that cannot be read is exit code 3.\n\n"
       "With --rooms the rooms come out as the file that `bake --rooms` reads (or finds as rooms.json beside the\n"
-      "scene), for corrections: boxes (min, max), and where boxes would not do polygons of [x, z] with floor and ceiling,\n"
+      "scene), for corrections: boxes (min, max), and where boxes would not do polygons of [x, z], which then win,\n"
       "in the scene file's own units. Where rooms overlap the first one wins; what lies in none goes to the nearest.\n"
       "Or write a file that only tells what to change, with a list \"edits\" of\n"
       "  {\"merge\": [\"room-1\", \"room-3\"], \"id\": \"hall\", \"name\": \"The hall\"}\n"

@@ -72,7 +72,7 @@ void read_outline(const std::string& where, const json& entry, AuthoredRoom& roo
     }
     for (const json& corners : *several) room.outline.push_back(polygon(where, corners));
   }
-  if (room.outline.empty()) return;
+  if (room.outline.empty() || entry.contains("min") || entry.contains("max")) return;
   glm::dvec2 low(HUGE_VAL), high(-HUGE_VAL);
   for (const PlanLoop& loop : room.outline) {
     for (const glm::dvec2& corner : loop) {
@@ -93,7 +93,7 @@ AuthoredRoom read_room(const std::string& where, const json& entry) {
   if (room.name.empty()) room.name = room.id;
   shorten_text(room.name, kMaxNameLength);
   read_outline(where, entry, room);
-  if (room.outline.empty()) {
+  if (room.outline.empty() || entry.contains("min") || entry.contains("max")) {
     const std::optional<glm::dvec3> lower = vector_member(where, entry, "min");
     const std::optional<glm::dvec3> upper = vector_member(where, entry, "max");
     if (!lower || !upper) throw BadInput(where + ": needs 'min' and 'max', or 'polygon' with 'floor' and 'ceiling'");

@@ -12,7 +12,6 @@ namespace probewalk {
 namespace {
 
 constexpr double kFurniture_m = 1.25;  // without floor, but in the room that is nearest to it
-constexpr double kBoxShare = 0.97;     // of its box; a room that fills less of it is drawn
 constexpr double kTolerances_cells[]{2.0, 1.0, 0.7, 0.0};
 
 double distance_to_line_m(glm::dvec2 a, glm::dvec2 b, glm::dvec2 p) {
@@ -63,17 +62,6 @@ class RoomPlan {
   }
 
   bool empty() const { return owner_.empty(); }
-  double share_of_box() const {
-    glm::ivec2 low = high_, high = low_;
-    std::size_t count = 0;
-    for_each([&](glm::ivec2 cell) {
-      low = glm::min(low, cell);
-      high = glm::max(high, cell);
-      ++count;
-    });
-    return double(count) / (double(high.x - low.x + 1) * double(high.y - low.y + 1));
-  }
-
   // Corners of columns along the border, the room to the left.
   std::vector<std::vector<glm::ivec2>> loops() const {
     std::multimap<std::pair<int, int>, glm::ivec2> next;  // by (z, x)
@@ -237,7 +225,7 @@ OutlinedRooms outline_rooms(const FloorMap& floor, const std::vector<RoomRegion>
   std::vector<bool> drawn;
   for (std::size_t k = 0; k < rooms.size(); ++k) {
     plans.emplace_back(floor, k, rooms[k].bounds);
-    drawn.push_back(!plans.back().empty() && plans.back().share_of_box() < kBoxShare);
+    drawn.push_back(false);
   }
   OutlinedRooms best;
   best.strayed = floor.nodes.size() + 1;
