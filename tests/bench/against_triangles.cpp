@@ -14,10 +14,11 @@ namespace probewalk::bench {
 namespace {
 
 void print(const std::string& name, const RaySummary& sum) {
-  fmt::print("{}: {} rays, wrong {:.2f} % (distance {:.2f}, hit for miss {:.2f}, miss for hit {:.2f}), hole {:.2f} %, error "
-             "p50 {:.1e} p95 {:.1e} p99 {:.1e}, look-ups {:.1f} ({:.1f} of rays with an answer), probes {:.2f}, NaN {}\n",
-             name, sum.rays, sum.wrong(), sum.distance, sum.hit_for_miss, sum.miss_for_hit, sum.hole, sum.p50, sum.p95,
-             sum.p99, sum.lookups, sum.answered_lookups, sum.tries, sum.nan);
+  fmt::print(
+      "{}: {} rays, wrong {:.2f} % (distance {:.2f}, hit for miss {:.2f}, miss for hit {:.2f}), hole {:.2f} %, error "
+      "p50 {:.1e} p95 {:.1e} p99 {:.1e}, look-ups {:.1f} ({:.1f} of rays with an answer), probes {:.2f}, NaN {}\n",
+      name, sum.rays, sum.wrong(), sum.distance, sum.hit_for_miss, sum.miss_for_hit, sum.hole, sum.p50, sum.p95,
+      sum.p99, sum.lookups, sum.answered_lookups, sum.tries, sum.nan);
 }
 
 void run(const std::filesystem::path& pack_folder, const std::filesystem::path& scene_file, int count) {

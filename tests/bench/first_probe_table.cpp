@@ -1,5 +1,5 @@
-// Which probe a ray had better ask first, in whole views from eyes along the tour: as the rules choose, or what a neighbour,
-// a tile's first pixel or the last frame found.
+// Which probe a ray had better ask first, in whole views from eyes along the tour: as the rules choose, or what a
+// neighbour, a tile's first pixel or the last frame found.
 //   first_probe_table PACK SCENE [VIEWS]
 #include <array>
 #include <cstdio>
@@ -21,7 +21,8 @@ constexpr float kPixel = 2.0f / kWidth;
 struct View {
   glm::vec3 origin_m, right, up, forward;
   glm::vec3 direction(int x, int y) const {
-    const float u = (static_cast<float>(x) + 0.5f - 0.5f * kWidth) * kPixel, v = (0.5f * kHeight - static_cast<float>(y) - 0.5f) * kPixel;
+    const float u = (static_cast<float>(x) + 0.5f - 0.5f * kWidth) * kPixel,
+                v = (0.5f * kHeight - static_cast<float>(y) - 0.5f) * kPixel;
     return glm::normalize(forward + u * right + v * up);
   }
 };
@@ -42,19 +43,22 @@ struct Picture {
   std::vector<int> answered_by;  // by the rules; -1: nobody
 };
 
-// What is asked first at pixel (x, y), given what was found so far in this way of asking (probe and tries by pixel); -1:
-// whom the rules choose.
+// What is asked first at pixel (x, y), given what was found so far in this way of asking (probe and tries by pixel);
+// -1: whom the rules choose.
 struct Found {
   int probe = -1;
   std::uint32_t tries = 0;
 };
-using Opening = std::function<int(const Picture& picture, const Picture* last, const std::vector<Found>& found, int x, int y)>;
+using Opening =
+    std::function<int(const Picture& picture, const Picture* last, const std::vector<Found>& found, int x, int y)>;
 
 // By the number of walks: of all rays the share that ended with that many, and how they ended, in per cent.
 void print_by_tries(const std::vector<Ray>& rays) {
   std::vector<std::array<std::size_t, 3>> ends(kMostTries + 1);  // right, wrong, hole
   for (const Ray& ray : rays) {
-    ++ends[std::min<std::size_t>(ray.tries, kMostTries)][ray.outcome == Outcome::kRight ? 0 : ray.outcome == Outcome::kHole ? 2 : 1];
+    ++ends[std::min<std::size_t>(ray.tries, kMostTries)][ray.outcome == Outcome::kRight  ? 0
+                                                         : ray.outcome == Outcome::kHole ? 2
+                                                                                         : 1];
   }
   const double all = 0.01 * static_cast<double>(rays.size());
   for (std::size_t k = 0; k < ends.size(); ++k) {
@@ -70,15 +74,19 @@ class Table {
     const Path tour = path_of_tour(pack_.manifest().tour);
     test::Random random(1);
     for (int k = 0; k < views; ++k) {
-      const glm::dvec3 eye_m = tour.at(tour.duration_s() * test::radical_inverse(static_cast<std::uint32_t>(k))).position_m +
-                               glm::dvec3(random(-0.25, 0.25), random(-0.25, 0.25), random(-0.25, 0.25));
+      const glm::dvec3 eye_m =
+          tour.at(tour.duration_s() * test::radical_inverse(static_cast<std::uint32_t>(k))).position_m +
+          glm::dvec3(random(-0.25, 0.25), random(-0.25, 0.25), random(-0.25, 0.25));
       const double yaw = random(0.0, 6.283), pitch = random(-0.4, 0.3);
       // The frame before: a head that turns by 100 degrees a second and moves by 1 m/s, at 90 Hz.
       pictures_.push_back({view_at(eye_m - glm::dvec3(0.008, 0.0, 0.008), yaw - 0.0194, pitch), {}, {}});
       pictures_.push_back({view_at(eye_m, yaw, pitch), {}, {}});
     }
-    fmt::print("{}, {} views of {} x {}\n| wd | first asked | tries | first answers % | wrong + hole = sum % | look-ups | other probe % |\n"
-               "|---|---|---|---|---|---|---|\n", pack_folder.filename().string(), views, kWidth, kHeight);
+    fmt::print(
+        "{}, {} views of {} x {}\n| wd | first asked | tries | first answers % | wrong + hole = sum % | look-ups | "
+        "other probe % |\n"
+        "|---|---|---|---|---|---|---|\n",
+        pack_folder.filename().string(), views, kWidth, kHeight);
     for (Picture& picture : pictures_) {
       picture.truth.resize(kWidth * kHeight);
       tbb::parallel_for(0, kHeight, [&](int y) {
@@ -115,27 +123,29 @@ class Table {
       });
     }
     row("as the rules choose", [](const Picture&, const Picture*, const std::vector<Found>&, int, int) { return -1; });
-    row("who answered the left neighbour",
-        [](const Picture&, const Picture*, const std::vector<Found>& found, int x, int y) { return x > 0 ? found[at(x - 1, y)].probe : -1; });
-    row("... where it took more than one try", [](const Picture&, const Picture*, const std::vector<Found>& found, int x, int y) {
-      return x > 0 && found[at(x - 1, y)].tries > 1 ? found[at(x - 1, y)].probe : -1;
-    });
-    row("who answered the first of 4 x 4", [](const Picture&, const Picture*, const std::vector<Found>& found, int x, int y) {
-      return x % 4 + y % 4 > 0 ? found[at(x / 4 * 4, y / 4 * 4)].probe : -1;
-    });
-    row("who answered the pixel in the last frame", [](const Picture&, const Picture* last, const std::vector<Found>&, int x, int y) {
-      return last->answered_by[at(x, y)];
-    });
-    row("... reprojected by the truth", [](const Picture& picture, const Picture* last, const std::vector<Found>&, int x, int y) {
-      const SurfaceHit& hit = picture.truth[at(x, y)];
-      const glm::vec3 direction = picture.view.direction(x, y);
-      const glm::vec3 to = hit.hit ? picture.view.origin_m + direction * hit.t - last->view.origin_m : direction;
-      const float depth = glm::dot(to, last->view.forward);
-      if (!(depth > 0.0f)) return -1;
-      const int px = static_cast<int>(glm::dot(to, last->view.right) / depth / kPixel + 0.5f * kWidth);
-      const int py = static_cast<int>(0.5f * kHeight - glm::dot(to, last->view.up) / depth / kPixel);
-      return px >= 0 && px < kWidth && py >= 0 && py < kHeight ? last->answered_by[at(px, py)] : -1;
-    });
+    row("who answered the left neighbour", [](const Picture&, const Picture*, const std::vector<Found>& found, int x,
+                                              int y) { return x > 0 ? found[at(x - 1, y)].probe : -1; });
+    row("... where it took more than one try",
+        [](const Picture&, const Picture*, const std::vector<Found>& found, int x, int y) {
+          return x > 0 && found[at(x - 1, y)].tries > 1 ? found[at(x - 1, y)].probe : -1;
+        });
+    row("who answered the first of 4 x 4",
+        [](const Picture&, const Picture*, const std::vector<Found>& found, int x, int y) {
+          return x % 4 + y % 4 > 0 ? found[at(x / 4 * 4, y / 4 * 4)].probe : -1;
+        });
+    row("who answered the pixel in the last frame", [](const Picture&, const Picture* last, const std::vector<Found>&,
+                                                       int x, int y) { return last->answered_by[at(x, y)]; });
+    row("... reprojected by the truth",
+        [](const Picture& picture, const Picture* last, const std::vector<Found>&, int x, int y) {
+          const SurfaceHit& hit = picture.truth[at(x, y)];
+          const glm::vec3 direction = picture.view.direction(x, y);
+          const glm::vec3 to = hit.hit ? picture.view.origin_m + direction * hit.t - last->view.origin_m : direction;
+          const float depth = glm::dot(to, last->view.forward);
+          if (!(depth > 0.0f)) return -1;
+          const int px = static_cast<int>(glm::dot(to, last->view.right) / depth / kPixel + 0.5f * kWidth);
+          const int py = static_cast<int>(0.5f * kHeight - glm::dot(to, last->view.up) / depth / kPixel);
+          return px >= 0 && px < kWidth && py >= 0 && py < kHeight ? last->answered_by[at(px, py)] : -1;
+        });
     row("who answers in the end", [](const Picture& picture, const Picture*, const std::vector<Found>&, int x, int y) {
       return picture.answered_by[at(x, y)];
     });
@@ -152,8 +162,8 @@ class Table {
   }
 
   f32::RayAnswer trace(const View& view, int x, int y, int opening) const {
-    return f32::trace_ray(probes_.grid(), dials_, default_rules(), view.origin_m, glm::vec3(0.0f), view.direction(x, y), kStartLevel,
-                          opening);
+    return f32::trace_ray(probes_.grid(), dials_, default_rules(), view.origin_m, glm::vec3(0.0f), view.direction(x, y),
+                          kStartLevel, opening);
   }
 
   void row(const char* name, const Opening& opening) {
@@ -181,9 +191,9 @@ class Table {
     const RaySummary sum = summarise(rays);
     if (by_tries_) print_by_tries(rays);
     const double all = 0.01 * static_cast<double>(rays.size());
-    fmt::print("| {} | {} | {:.3f} | {:.2f} | {:.2f} + {:.2f} = {:.2f} | {:.1f} | {:.1f} |\n", dials_.distance_weight, name, sum.tries,
-               static_cast<double>(first_answers) / all, sum.wrong(), sum.hole, sum.wrong() + sum.hole, sum.lookups,
-               static_cast<double>(other) / all);
+    fmt::print("| {} | {} | {:.3f} | {:.2f} | {:.2f} + {:.2f} = {:.2f} | {:.1f} | {:.1f} |\n", dials_.distance_weight,
+               name, sum.tries, static_cast<double>(first_answers) / all, sum.wrong(), sum.hole, sum.wrong() + sum.hole,
+               sum.lookups, static_cast<double>(other) / all);
     std::fflush(stdout);
   }
 

@@ -41,10 +41,12 @@ inline void judge(const f32::RayAnswer& answer, const SurfaceHit& expected, Ray&
   }
 }
 
-inline Ray cast(const ProbeSet& probes, const TraceConstants& dials, const RayScene& triangles, const Path& tour, int k, int n) {
+inline Ray cast(const ProbeSet& probes, const TraceConstants& dials, const RayScene& triangles, const Path& tour, int k,
+                int n) {
   test::Random random(static_cast<std::uint64_t>(k) + 1);
   const double at_s = tour.duration_s() * test::radical_inverse(static_cast<std::uint32_t>(k));
-  const glm::dvec3 eye_m = tour.at(at_s).position_m + glm::dvec3(random(-kSway_m, kSway_m), random(-kSway_m, kSway_m), random(-kSway_m, kSway_m));
+  const glm::dvec3 eye_m = tour.at(at_s).position_m +
+                           glm::dvec3(random(-kSway_m, kSway_m), random(-kSway_m, kSway_m), random(-kSway_m, kSway_m));
   // Directions in an order that has nothing to do with the places.
   const glm::vec3 direction(test::hammersley_direction(static_cast<int>(std::int64_t{k} * 7919 % n), n));
   const glm::vec3 origin_m(eye_m);
@@ -81,7 +83,9 @@ inline RaySummary summarise(const std::vector<Ray>& rays) {
   }
   sum.rays = rays.size();
   const double n = static_cast<double>(rays.size());
-  const auto share = [&](Outcome outcome) { return 100.0 * static_cast<double>(counts[static_cast<int>(outcome)]) / n; };
+  const auto share = [&](Outcome outcome) {
+    return 100.0 * static_cast<double>(counts[static_cast<int>(outcome)]) / n;
+  };
   sum.distance = share(Outcome::kWrongDistance);
   sum.hit_for_miss = share(Outcome::kHitForMiss);
   sum.miss_for_hit = share(Outcome::kMissForHit);
@@ -99,10 +103,11 @@ inline RaySummary summarise(const std::vector<Ray>& rays) {
   return sum;
 }
 
-inline RaySummary cast_all(const ProbeSet& probes, const TraceConstants& dials, const RayScene& triangles, const Path& tour,
-                           int count) {
+inline RaySummary cast_all(const ProbeSet& probes, const TraceConstants& dials, const RayScene& triangles,
+                           const Path& tour, int count) {
   std::vector<Ray> rays(static_cast<std::size_t>(count));
-  tbb::parallel_for(0, count, [&](int k) { rays[static_cast<std::size_t>(k)] = cast(probes, dials, triangles, tour, k, count); });
+  tbb::parallel_for(0, count,
+                    [&](int k) { rays[static_cast<std::size_t>(k)] = cast(probes, dials, triangles, tour, k, count); });
   return summarise(rays);
 }
 
