@@ -24,6 +24,19 @@ struct LightOptions {
   int threads = 0;  // 0 = all
 };
 
+class CachePoints;
+class DirectLight;
+
+// Is told what outgoing() reads beside surfaces and rays, from any thread.
+class LightListener {
+ public:
+  virtual ~LightListener() = default;
+  // Light was asked for at a place; by_all: what arrives there was looked for from all emitters alike.
+  virtual void lit(glm::vec3 position_m, bool by_all) = 0;
+  // The value of a cache point counted.
+  virtual void used(std::uint32_t point) = 0;
+};
+
 class LightField {
  public:
   // Builds the irradiance cache (long: reports progress, obeys cancellation). Deterministic, whatever the threads.
@@ -51,6 +64,11 @@ class LightField {
   std::uint64_t rays_cast() const;
   std::size_t cache_points() const;
   const std::vector<glm::vec3>& cache_values() const;
+
+  // What the field is made of, and whom to tell of what is read from it (null = nobody; not while it is read).
+  const CachePoints& points() const;
+  const DirectLight& direct() const;
+  void tell(LightListener* listener) const;
 
  private:
   struct Impl;

@@ -40,8 +40,9 @@ await() {
 start_service
 unset DISPLAY WAYLAND_DISPLAY XAUTHORITY
 if [ "$display" = xvfb ]; then
-  # It finds a free display and tells its number once it answers.
-  setpriv --pdeathsig TERM Xvfb -displayfd 3 -screen 0 1600x900x24 -nolisten tcp 3>display >/dev/null 2>&1 </dev/null &
+  # It finds a free display and tells its number once it answers. It is not to begin anew when its last window closes:
+  # the next would find nobody.
+  setpriv --pdeathsig TERM Xvfb -displayfd 3 -noreset -screen 0 1600x900x24 -nolisten tcp 3>display >/dev/null 2>&1 </dev/null &
   screen=$!
   for _ in $(seq 100); do [ -s display ] && break; sleep 0.1; done
   [ -s display ] || fail "Xvfb did not start"
