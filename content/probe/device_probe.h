@@ -36,7 +36,8 @@ WordRange pyramid_range(std::uint32_t n_log2);
 // The words must outlive the record's use.
 ProbeRecord record_in_memory(const DeviceProbe& probe);
 
-// Bytes of the words of a probe of n cells and r texels a side.
+// Bytes of the words of a probe of n cells and r texels a side, at most: which of the cut cells lie on the fold, and
+// take a little more, is not asked for.
 std::uint64_t device_probe_bytes(int n, int r, std::size_t cut_cells);
 // Bytes that a probe's two blocks take on the device, where each begins at a multiple of kDeviceBlockAlignment.
 inline constexpr std::uint64_t kDeviceBlockAlignment = 32;
