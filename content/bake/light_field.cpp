@@ -85,6 +85,10 @@ glm::vec3 LightField::along(glm::vec3 origin_m, glm::vec3 unit_direction, float 
   return outgoing(found, origin_m, unit_direction, found.t * spread_rad, irradiance);
 }
 
+glm::vec3 LightField::indirect(glm::vec3 position_m, glm::vec3 normal) const {
+  return impl_->cache.indirect(position_m, normal);
+}
+
 std::uint64_t LightField::rays_cast() const {
   return impl_->points.rays_cast() + impl_->direct.rays_cast() + impl_->cache.rays_cast() +
          impl_->rays_cast.combine(std::plus<>());

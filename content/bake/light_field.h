@@ -58,6 +58,10 @@ class LightField {
   glm::vec3 along(glm::vec3 origin_m, glm::vec3 unit_direction, float spread_rad, SurfaceHit* hit = nullptr,
                   glm::vec3* irradiance = nullptr) const;
 
+  // Irradiance (lux) at a surface point with unit normal from everything that is not sampled directly: sky, large
+  // emitters, reflected light. Thread-safe.
+  glm::vec3 indirect(glm::vec3 position_m, glm::vec3 normal) const;
+
   // Content hash of everything the cache holds; equal between two builds of the same scene and options.
   std::string hash() const;
   // Rays cast so far: by the cache, and shadow rays by outgoing().
