@@ -124,8 +124,14 @@ struct Device::Impl {
   std::atomic<std::uint32_t> pipelines_built{0};
   std::mutex queue_mutex, copy_mutex, mirror_mutex;
 
+  // Nobody may submit meanwhile.
+  VkResult wait_idle() {
+    const std::scoped_lock lock(queue_mutex, copy_mutex, mirror_mutex);
+    return vkDeviceWaitIdle(device);
+  }
+
   ~Impl() {
-    if (device != VK_NULL_HANDLE) vkDeviceWaitIdle(device);
+    if (device != VK_NULL_HANDLE) wait_idle();
     if (allocator != VK_NULL_HANDLE) vmaDestroyAllocator(allocator);
     if (device != VK_NULL_HANDLE) vkDestroyDevice(device, nullptr);
     if (instance == VK_NULL_HANDLE) return;
@@ -305,9 +311,8 @@ VkResult Device::present(const VkPresentInfoKHR& info) const {
   return vkQueuePresentKHR(impl_->mirror_queue, &info);
 }
 
-void Device::wait_idle() const {
-  const std::scoped_lock lock(impl_->queue_mutex, impl_->copy_mutex, impl_->mirror_mutex);
-  check(vkDeviceWaitIdle(impl_->device), "vkDeviceWaitIdle");
-}
+void Device::wait_idle() const { check(impl_->wait_idle(), "vkDeviceWaitIdle"); }
+
+void Device::wait_idle_or_lost() const noexcept { impl_->wait_idle(); }
 
 }  // namespace probewalk

@@ -82,6 +82,8 @@ class Device {
   // no frame waits for it. What signals its semaphores has been submitted before.
   VkResult present(const VkPresentInfoKHR& info) const;
   void wait_idle() const;
+  // The same where nothing may be thrown, in destructors: what a lost device was at is at an end too.
+  void wait_idle_or_lost() const noexcept;
 
  private:
   struct Impl;

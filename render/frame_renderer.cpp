@@ -85,8 +85,7 @@ struct FrameRenderer::Impl {
   ~Impl() {
     if (lookups_to_come.valid()) lookups_to_come.wait();
     if (guides_to_come.valid()) guides_to_come.wait();
-    // Not wait_for: a lost device must not throw here.
-    vkDeviceWaitIdle(device.handle());
+    device.wait_idle_or_lost();
     slots.clear();
     vkDestroySemaphore(device.handle(), timeline, nullptr);
   }
@@ -389,13 +388,14 @@ std::uint64_t FrameRenderer::submit() {
   return impl.next_frame++;
 }
 
-bool FrameRenderer::submit_beside(SideView& side, const ViewConstants& view, const FrameSettings& settings) {
+bool FrameRenderer::submit_beside(SideView& side, const ViewConstants& view, const FrameSettings& settings,
+                                  const Guides& guides) {
   Impl& impl = *impl_;
   std::uint64_t done = 0;
   check(vkGetSemaphoreCounterValue(impl.device.handle(), impl.timeline, &done), "vkGetSemaphoreCounterValue");
   if (impl.next_frame == 1 || impl.is_recorded || done < impl.side_work) return false;
   const auto last = static_cast<std::uint32_t>((impl.next_frame - 1) % kFrameSlots);
-  const VkCommandBuffer commands = side.record(impl.constants_for(side.options(), {&view, 1}, settings, last));
+  const VkCommandBuffer commands = side.record(impl.constants_for(side.options(), {&view, 1}, settings, last), guides);
   VkCommandBufferSubmitInfo buffer{VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO};
   buffer.commandBuffer = commands;
   const VkSemaphoreSubmitInfo signal =

@@ -77,17 +77,18 @@ class FrameRenderer {
   // Returns the frame's number, from 1.
   std::uint64_t submit();
 
-  // One view more from what the frame submitted last was drawn from, with the same settings; after the frame, so that
-  // it holds up none of its passes. False, and nothing is done, while the device is still at the last one of `side`,
-  // which must always be given to the same renderer and outlive its work (wait()).
-  bool submit_beside(SideView& side, const ViewConstants& view, const FrameSettings& settings);
+  // One view more from what the frame submitted last was drawn from, with the same settings, and guides of its own;
+  // after the frame, so that it holds up none of its passes. False, and nothing is done, while the device is still at
+  // the last one of `side`, which must always be given to the same renderer and outlive its work (wait()).
+  bool submit_beside(SideView& side, const ViewConstants& view, const FrameSettings& settings,
+                     const Guides& guides = {});
 
   // How long the last record waited for the device.
   std::int64_t blocked_ns() const;
   // Bytes that the recorded frame copies to the device.
   std::uint64_t bytes_copied() const;
-  // Times of the oldest finished frame that was timed and has not been taken yet, if any. Does not block. Times not taken before
-  // their slot is used again (two frames later) are kept, up to 64 of them.
+  // Times of the oldest finished frame that was timed and has not been taken yet, if any. Does not block. Times not
+  // taken before their slot is used again (two frames later) are kept, up to 64 of them.
   std::optional<FrameGpuTimes> take_times();
   // Waits until all frames submitted have finished.
   void wait();

@@ -1,11 +1,17 @@
 #include "render/side_view.h"
 
+#include <chrono>
 #include <cstring>
 
 #include "render/check.h"
 #include "render/commands.h"
 
 namespace probewalk {
+namespace {
+
+constexpr std::uint32_t kGuideRest_pictures = 500;  // from one teleport to the next it pays to keep them
+
+}  // namespace
 
 SideView::SideView(const Device& device, const TracerOptions& tracer, VkFormat format)
     : device_(device),
@@ -29,7 +35,24 @@ SideView::~SideView() {
   vkDestroyImageView(device_.handle(), view_, nullptr);
 }
 
-VkCommandBuffer SideView::record(const FrameConstants& constants) {
+GuidePass* SideView::choose_guides(bool wanted) {
+  if (guides_to_come_.valid() && guides_to_come_.wait_for(std::chrono::seconds(0)) == std::future_status::ready) {
+    guides_ = guides_to_come_.get();
+  }
+  if (wanted) {
+    pictures_without_guides_ = 0;
+    if (!guides_ && !guides_to_come_.valid()) {
+      guides_to_come_ = std::async(std::launch::async, [this] {
+        return std::make_unique<GuidePass>(device_, tracer_.distance(), target_.format, 1);
+      });
+    }
+    return guides_.get();
+  }
+  if (guides_ && ++pictures_without_guides_ > kGuideRest_pictures) guides_.reset();
+  return nullptr;
+}
+
+VkCommandBuffer SideView::record(const FrameConstants& constants, const Guides& guides) {
   std::memcpy(constants_.mapped(), &constants, sizeof(constants));
   constants_.flush();
   check(vkResetCommandPool(device_.handle(), pool_, 0), "vkResetCommandPool");
@@ -43,6 +66,9 @@ VkCommandBuffer SideView::record(const FrameConstants& constants) {
   copied.dstAccessMask = VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT;
   pipeline_barrier(commands_, copied);
   resolve_.record(commands_, constants_.address(), target_, {&view_, 1});
+  if (GuidePass* guide_pass = choose_guides(guides.any())) {
+    guide_pass->record(commands_, 0, constants_.address(), tracer_.distance(), target_, {&view_, 1}, guides);
+  }
   check(vkEndCommandBuffer(commands_), "vkEndCommandBuffer");
   return commands_;
 }

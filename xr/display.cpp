@@ -46,9 +46,13 @@ DeviceHooks with_window(DeviceHooks hooks, const DeviceHooks& window) {
 
 // Device, source and mirror for a runtime; without a window also where a desktop or a device cannot mirror.
 void open_mirrored(Display& display, const DisplayOptions& options, const FloorMap& floor, const Pose& start) {
-  const HeadsetOptions headset{options.eye_size, options.seated,
+  const HeadsetOptions headset{options.eye_size,
+                               options.seated,
                                locomotion_of(options, "medium", options.seated ? kSeatedEyeHeight_m : kEyeHeight_m),
-                               options.overlay, options.waits_ahead, options.refresh_hz};
+                               options.overlay,
+                               options.waits_ahead,
+                               options.refresh_hz,
+                               options.asks_for_poses};
   const ShownEyes shown = options.window_eyes.value_or(ShownEyes::kLeft);
   if (shown != ShownEyes::kNone) {
     try {

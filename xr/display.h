@@ -35,8 +35,9 @@ struct DisplayOptions {
   // Goes over the locomotion's. Default: kSeatedEyeHeight_m for a seated wearer, else kEyeHeight_m.
   std::optional<double> eye_height_m;
   std::optional<std::string> vignette;  // a name of vignette_levels(); default: medium in a headset, off in a window
-  bool waits_ahead = true;           // headset: for the next frame while one is drawn
-  std::optional<double> refresh_hz;  // headset; empty = as it is
+  bool waits_ahead = true;              // headset: for the next frame while one is drawn
+  std::optional<double> refresh_hz;     // headset; empty = as it is
+  bool asks_for_poses = true;           // headset: for what the pose errors are measured against
   bool offscreen_in_real_time = false;  // at the pace of a display, not on a fixed clock
   LocomotionOptions locomotion;
   ViewLayout offscreen_layout = ViewLayout::kStereo;

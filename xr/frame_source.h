@@ -99,8 +99,8 @@ class FrameSource {
   virtual const FloorArc* aim() const { return nullptr; }
   // Whether a person's head moves the view, which no wall holds back.
   virtual bool head_is_real() const { return false; }
-  // One for each frame whose time has come since the last call; asks the runtime. Always empty where a display has no
-  // later answer.
+  // One for each frame whose time has come, each frame once; asks the runtime, of few frames a call. Always empty where
+  // a display has no later answer.
   virtual std::vector<PoseError> take_pose_errors() { return {}; }
   // Whether the display may hide parts of its views; and the meshes that do, one a view, when they are new or have
   // changed since the last call.

@@ -1,7 +1,6 @@
 #include "xr/ledger_cost.h"
 
 #include <algorithm>
-#include <ctime>
 #include <vector>
 
 #include "xr/latency/clock.h"
@@ -15,12 +14,6 @@ constexpr std::uint64_t kWarmup = 32;  // pipelines, caches, rooms
 // On off, off on, on off...: what drifts falls on both alike.
 bool ledger_is_on(std::uint64_t block) {
   return block % 4 == 0 || block % 4 == 3;
-}
-
-std::int64_t process_cpu_ns() {
-  timespec time{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
-  return static_cast<std::int64_t>(time.tv_sec) * 1'000'000'000 + time.tv_nsec;
 }
 
 // Looks at both clocks where one block ends and the next begins: the same for blocks with and without the ledger.

@@ -41,8 +41,7 @@ Mirror::~Mirror() {
   thread_.join();
   spdlog::info("mirror: {} pictures, presenting one took {:.2f} ms at most",
                swapchain_.presented(), static_cast<double>(swapchain_.longest_present_ns()) * 1e-6);
-  // Not check: a lost device must not throw here.
-  vkDeviceWaitIdle(device_.handle());
+  device_.wait_idle_or_lost();
   vkDestroyFence(device_.handle(), copied_, nullptr);
   vkDestroyCommandPool(device_.handle(), pool_, nullptr);
 }

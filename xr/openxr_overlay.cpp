@@ -38,8 +38,7 @@ OpenXrOverlay::~OpenXrOverlay() {
   if (making_.valid()) making_.wait();
   if (picture_to_come_.valid()) picture_to_come_.wait();
   if (pool_ == VK_NULL_HANDLE) return;
-  // Not check: a lost device must not throw here.
-  vkDeviceWaitIdle(device_.handle());
+  device_.wait_idle_or_lost();
   hide();
 }
 

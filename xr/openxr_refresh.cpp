@@ -62,7 +62,7 @@ void OpenXrRefresh::choose(double wanted_hz) {
   }
   check_xr(function<PFN_xrRequestDisplayRefreshRateFB>(instance_, "xrRequestDisplayRefreshRateFB")(session_, *nearest),
            "xrRequestDisplayRefreshRateFB");
-  now_hz_ = static_cast<double>(*nearest);
+  asked_hz_ = static_cast<double>(*nearest);
 }
 
 void OpenXrRefresh::changed_to(double hz) {
@@ -72,8 +72,11 @@ void OpenXrRefresh::changed_to(double hz) {
 
 std::string OpenXrRefresh::in_words() const {
   if (now_hz_ <= 0.0) return {};
-  return offered_hz_.empty() ? fmt::format("{:.4g} Hz", now_hz_)
-                             : fmt::format("{:.4g} Hz of {}", now_hz_, listed(offered_hz_));
+  std::string words = fmt::format("{:.4g} Hz", now_hz_);
+  if (!offered_hz_.empty()) words += " of " + listed(offered_hz_);
+  const bool is_to_come = asked_hz_ > 0.0 && std::abs(asked_hz_ - now_hz_) > kSameRate_hz;
+  if (is_to_come) words += fmt::format(", {:.4g} Hz asked for", asked_hz_);
+  return words;
 }
 
 }  // namespace probewalk

@@ -18,7 +18,7 @@ class OpenXrRefresh {
   void choose(double wanted_hz);
   // What the runtime says the rate is from now on.
   void changed_to(double hz);
-  // "72 Hz of 60, 72, 90"; empty = not known.
+  // "72 Hz of 60, 72, 90, 90 Hz asked for", without the latter once the runtime has said so; empty = not known.
   std::string in_words() const;
 
  private:
@@ -26,7 +26,8 @@ class OpenXrRefresh {
   XrSession session_;
   bool can_choose_;
   std::vector<float> offered_hz_;  // ascending
-  double now_hz_ = 0.0;            // or asked for, until the runtime says otherwise
+  double now_hz_ = 0.0;
+  double asked_hz_ = 0.0;  // 0 = for none
 };
 
 }  // namespace probewalk

@@ -14,6 +14,7 @@
 #include "xr/latency/clock.h"
 #include "xr/latency/stopwatch.h"
 #include "xr/openxr_enumerate.h"
+#include "xr/openxr_session.h"
 #include "xr/openxr_visibility.h"
 #include "xr/path.h"
 
@@ -23,6 +24,9 @@ namespace {
 constexpr XrViewConfigurationType kStereo = XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO;
 // What the specification guarantees of the history of poses.
 constexpr std::int64_t kPoseHistory_ns = 50'000'000;
+// Each shown frame is asked about once, so that one a frame would do; two, so that what has piled up goes, too. A stall
+// is no reason to hold the next frame up with questions: what gets too old unasked says so.
+constexpr int kQuestionsAFrame = 2;
 constexpr auto kExitPatience = std::chrono::milliseconds(500);
 
 glm::dvec3 vec_of(const XrVector3f& v) {
@@ -68,8 +72,9 @@ OpenXrSource::OpenXrSource(const OpenXrInstance& instance, const Device& device,
       locomotion_(floor, options.locomotion),
       anchor_(start),
       waits_ahead_(options.waits_ahead),
+      asks_for_poses_(options.asks_for_poses),
       overlay_board_(options.overlay) {
-  create_session();
+  check_xr(create_session(instance, device, session_.out()), "xrCreateSession");
   refresh_.emplace(instance, session_.get());
   if (options.refresh_hz) refresh_->choose(*options.refresh_hz);
   create_space(options.seated, options.locomotion.eye_height_m);
@@ -79,19 +84,6 @@ OpenXrSource::OpenXrSource(const OpenXrInstance& instance, const Device& device,
     overlay_ = std::make_unique<OpenXrOverlay>(device, session_.get(), format_, *overlay_board_);
   }
   waiter_ = std::make_unique<OpenXrWaiter>(session_.get());
-}
-
-void OpenXrSource::create_session() {
-  XrGraphicsBindingVulkan2KHR binding{XR_TYPE_GRAPHICS_BINDING_VULKAN2_KHR};
-  binding.instance = device_.instance();
-  binding.physicalDevice = device_.physical();
-  binding.device = device_.handle();
-  binding.queueFamilyIndex = device_.queue_family();
-  binding.queueIndex = 0;
-  XrSessionCreateInfo info{XR_TYPE_SESSION_CREATE_INFO};
-  info.next = &binding;
-  info.systemId = instance_.system();
-  check_xr(xrCreateSession(instance_.handle(), &info, session_.out()), "xrCreateSession");
 }
 
 void OpenXrSource::create_space(bool seated, double eye_height_m) {
@@ -119,26 +111,14 @@ void OpenXrSource::create_space(bool seated, double eye_height_m) {
 }
 
 void OpenXrSource::create_swapchains(VkExtent2D wanted) {
-  const auto configurations = enumerate_xr<XrViewConfigurationView>(
-      "xrEnumerateViewConfigurationViews", {XR_TYPE_VIEW_CONFIGURATION_VIEW},
-      [&](auto capacity, auto* count, auto* items) {
-        return xrEnumerateViewConfigurationViews(instance_.handle(), instance_.system(), kStereo, capacity, count,
-                                                 items);
-      });
-  // One array image for all views: as large as the largest of them.
-  VkExtent2D most{~0u, ~0u};
-  for (const auto& view : configurations) {
-    extent_.width = std::max(extent_.width, view.recommendedImageRectWidth);
-    extent_.height = std::max(extent_.height, view.recommendedImageRectHeight);
-    most.width = std::min(most.width, view.maxImageRectWidth);
-    most.height = std::min(most.height, view.maxImageRectHeight);
-  }
-  if (wanted.width > 0) extent_ = wanted;
+  const OpenXrViews views = read_views(instance_, kStereo);
+  const VkExtent2D most = views.most;
+  extent_ = wanted.width > 0 ? wanted : views.recommended;
   if (extent_.width > most.width || extent_.height > most.height) {
     throw BadUsage(fmt::format("--eye-size {}x{}: this headset takes at most {}x{}", extent_.width, extent_.height,
                                most.width, most.height));
   }
-  view_count_ = static_cast<std::uint32_t>(configurations.size());
+  view_count_ = views.count;
 
   const auto modes = enumerate_xr<XrEnvironmentBlendMode>(
       "xrEnumerateEnvironmentBlendModes", {}, [&](auto capacity, auto* count, auto* items) {
@@ -444,8 +424,9 @@ void OpenXrSource::end(const FrameTiming& timing, const std::vector<ViewPose>& r
   XrResult result = XR_SUCCESS;
   frame_.outcome.end = timed([&] { result = xrEndFrame(session_.get(), &info); });
   if (!alive(result, "xrEndFrame")) return;
-  frame_.outcome.shown = frame_.outcome.pose_answer_follows = shown;
-  if (shown) {
+  frame_.outcome.shown = shown;
+  frame_.outcome.pose_answer_follows = shown && asks_for_poses_;
+  if (frame_.outcome.pose_answer_follows) {
     const Head head = head_of(frame_.views);
     shown_.push_back({frame_.display_time, timing.predicted_display_ns, head.position_m, head.orientation});
   }
@@ -453,13 +434,15 @@ void OpenXrSource::end(const FrameTiming& timing, const std::vector<ViewPose>& r
 
 std::vector<PoseError> OpenXrSource::take_pose_errors() {
   std::vector<PoseError> errors;
-  while (!shown_.empty() && shown_.front().predicted_display_ns < now_ns()) {
+  int asked = 0;
+  while (!shown_.empty() && shown_.front().predicted_display_ns < now_ns() && asked < kQuestionsAFrame) {
     const ShownPose pose = shown_.front();
     shown_.pop_front();
     if (now_ns() - pose.predicted_display_ns > kPoseHistory_ns) {
       errors.push_back({.predicted_display_ns = pose.predicted_display_ns, .answer = PoseAnswer::kTooLate});
       continue;
     }
+    ++asked;
     const std::vector<XrView> views = locate_views(pose.time);
     if (views.empty()) {
       errors.push_back({.predicted_display_ns = pose.predicted_display_ns, .answer = PoseAnswer::kRefused});

@@ -25,9 +25,10 @@ struct HeadsetOptions {
   VkExtent2D eye_size{0, 0};  // 0 = what the runtime recommends
   bool seated = false;        // the head's resting place is at the locomotion's eye height, wherever the floor is
   LocomotionOptions locomotion;
-  OverlayBoard* overlay = nullptr;  // shown and hidden by a held menu button; outlives the source
+  OverlayBoard* overlay = nullptr;   // shown and hidden by a held menu button; outlives the source
   bool waits_ahead = true;           // for the next frame as soon as one has begun, not once it has ended
   std::optional<double> refresh_hz;  // to be asked for; empty = as it is
+  bool asks_for_poses = true;        // what a frame's should have been, once its time has come
 };
 
 // Nothing but the wearer moves the view, by head, hands and sticks (locomotion.h); teleports blink. When runtime,
@@ -84,7 +85,6 @@ class OpenXrSource final : public FrameSource {
     glm::dquat orientation{1.0, 0.0, 0.0, 0.0};
   };
 
-  void create_session();
   void create_space(bool seated, double eye_height_m);
   void create_swapchains(VkExtent2D wanted);
   // False when the runtime is gone (the state then says so); throws on any other error.
@@ -109,7 +109,7 @@ class OpenXrSource final : public FrameSource {
   SessionState state_;
   XrOwned<XrSession, xrDestroySession> session_;
   std::optional<OpenXrRefresh> refresh_;  // once there is a session
-  const bool waits_ahead_;
+  const bool waits_ahead_, asks_for_poses_;
   std::unique_ptr<OpenXrInput> input_;
   XrOwned<XrSpace, xrDestroySpace> space_;
   RigFloor rig_floor_;  // in the session's space

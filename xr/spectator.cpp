@@ -27,13 +27,14 @@ void Spectator::follow(const ViewPose& head, std::int64_t display_ns) {
   pose_ = filter_.next({head.position_m, head.orientation}, dt_s);
 }
 
-void Spectator::show(Mirror& mirror, FrameRenderer& renderer, const FrameSettings& settings, FrameRecord& record) {
+void Spectator::show(Mirror& mirror, FrameRenderer& renderer, const FrameSettings& settings, const Guides& guides,
+                     FrameRecord& record) {
   if (!last_display_ns_) return;
   mirror.offer_drawn(record, [&]() -> std::optional<FrameTarget> {
     const auto width = static_cast<int>(kSpectatorSize.width), height = static_cast<int>(kSpectatorSize.height);
     const ViewConstants view =
         view_constants(pose_.position_m, pose_.orientation, symmetric_fov(kSpectatorFov_rad, width, height), width);
-    if (!renderer.submit_beside(side_, view, settings)) return std::nullopt;
+    if (!renderer.submit_beside(side_, view, settings, {.aim = guides.aim, .vignette = {}})) return std::nullopt;
     return side_.target();
   });
 }

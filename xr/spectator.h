@@ -23,8 +23,10 @@ class Spectator {
 
   // Once a frame, after its end.
   void follow(const ViewPose& head, std::int64_t display_ns);
-  // Draws and hands over a picture if the mirror wants one; never waits for either.
-  void show(Mirror& mirror, FrameRenderer& renderer, const FrameSettings& settings, FrameRecord& record);
+  // Draws and hands over a picture if the mirror wants one; never waits for either. Of the wearer's guides it shows
+  // where a teleport leads; the vignette is for eyes that the motion carries.
+  void show(Mirror& mirror, FrameRenderer& renderer, const FrameSettings& settings, const Guides& guides,
+            FrameRecord& record);
 
  private:
   SideView side_;

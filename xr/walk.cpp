@@ -169,6 +169,8 @@ void Walk::note_display() const {
 LegEnd Walk::walk_leg() {
   WalkLeg leg(options_, pack_, *display_, books_, watch_.get(), progress_);
   const LegEnd end = leg.run();
+  // A headset may have changed on the way: its refresh rate is its runtime's.
+  if (books_.info.display_changes.empty()) books_.info.display_details = display_->source->description();
   if (end == LegEnd::kLost) books_.left_ns = now_ns();
   leg.finish();
   return end;

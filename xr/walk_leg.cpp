@@ -122,6 +122,7 @@ bool WalkLeg::frame() {
   FrameTiming timing;
   record.wait = record.runtime_wait = stamped([&] { timing = source_.wait(); });
   if (timing.predicted_display_ns == 0) return true;  // lost while waiting: the next poll says so
+  if (keeps_books_) record.process_cpu_ns = process_cpu_ns();
   record.begin = stamped([&] { source_.begin(timing); });
   record.predicted_display = timing.predicted_display_ns;
   record.period = timing.period_ns;
@@ -139,7 +140,7 @@ bool WalkLeg::frame() {
   // The frame is the runtime's by now: what is drawn for others holds it up no more.
   if (spectator_ && drawn != 0) {
     spectator_->follow(*books_.head, timing.predicted_display_ns);
-    spectator_->show(*display_.mirror, renderer_, settings_, record);
+    spectator_->show(*display_.mirror, renderer_, settings_, guides(), record);
   }
   if (drawn != 0 && books_.left_ns) note_arrival();
   if (keeps_books_) book(record, drawn);

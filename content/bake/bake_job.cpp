@@ -19,6 +19,8 @@
 #include "content/bake/plan_picture.h"
 #include "content/bake/probe_lattice.h"
 #include "content/bake/quantised_level.h"
+#include "content/bake/rebake/bake_inputs.h"
+#include "content/bake/rebake/room_reuse.h"
 #include "content/error.h"
 #include "content/pack/pack_format.h"
 #include "content/pack/pack_io.h"
@@ -60,6 +62,9 @@ void check_options(const BakeOptions& options) {
   }
   if (options.target.asked() && options.placement.spacing_m != 0.0) {
     throw BadUsage("--spacing is for grids; with --error or --budget probes stand where they are needed");
+  }
+  if (!(options.light_tolerance >= 0.0 && options.light_tolerance <= 1.0)) {
+    throw BadUsage(fmt::format("--light-tolerance {} is not a share between 0 and 1; 0.01 is the default", options.light_tolerance));
   }
   if (options.pack.extension() != ".probes") {
     throw BadUsage(fmt::format("a pack's name ends in .probes, this one does not: {}", options.pack.string()));
@@ -109,8 +114,14 @@ class BakeJob {
     const auto start = std::chrono::steady_clock::now();
     describe_scene();
     find_space_and_tour();
+    inputs_.options_hash = manifest_.options_hash;
+    if (!options_.all) earlier_ = find_earlier_bake(options_.pack, manifest_.options_hash);
+    inputs_.cells = earlier_ ? earlier_->inputs.cells : SpaceCells::around(scene_.bounds);
     if (!options_.target.asked()) place();
-    const std::string key_text = manifest_.scene_hash + manifest_.options_hash;
+    const SpaceCells& cells = inputs_.cells;
+    const std::string key_text = fmt::format("{}{} {:a} {:a} {} {} {} {} {} {}", manifest_.scene_hash, manifest_.options_hash,
+                                             earlier_scale().value_or(0.0), cells.cell_m,
+                                             cells.lower.x, cells.lower.y, cells.lower.z, cells.dims.x, cells.dims.y, cells.dims.z);
     const std::string key = content_hash(std::as_bytes(std::span(key_text)));
     const fs::path folder = options_.pack.string() + ".partial";
     if (options_.share > 0 && !BakeState::is_there(folder, key)) {
@@ -118,14 +129,18 @@ class BakeJob {
                                  options_.shares, folder.string(), options_.shares));
     }
     const BakeState state(folder, key);
-    const LightField light(scene_, rays_, options_.light, progress_, state.load_light());
+    std::vector<glm::vec3> kept_light = state.load_light();
+    const bool same_scene = earlier_ && earlier_->pack.manifest().scene_hash == manifest_.scene_hash;
+    if (kept_light.empty() && same_scene) kept_light = earlier_->inputs.light.indirect;
+    const LightField light(scene_, rays_, options_.light, progress_, std::move(kept_light));
     if (options_.share == 0) state.store_light(light.cache_values());
     if (options_.shares > 0 && options_.share == 0) return report_;
-    const Exposure exposure = choose_exposure(light, tour_);
+    const Exposure exposure = exposure_of(light);
     manifest_.radiance_scale = exposure.radiance_scale;
     manifest_.exposure_ev = exposure.exposure_ev;
-    MapStore maps(rays_, light, static_cast<float>(manifest_.radiance_scale), state);
+    MapStore maps(rays_, light, static_cast<float>(manifest_.radiance_scale), state, inputs_.cells);
     if (options_.target.asked()) plan(light, exposure, maps);
+    find_what_is_kept(light);
     if (options_.shares > 0) {
       bake_share(maps);
       return report_;
@@ -172,9 +187,23 @@ class BakeJob {
     manifest_.tour = tour_;
   }
 
+  std::optional<double> earlier_scale() const {
+    return earlier_ ? earlier_->pack.manifest().radiance_scale : options_.kept_radiance_scale;
+  }
+
+  Exposure exposure_of(const LightField& light) const {
+    Exposure exposure = choose_exposure(light, tour_);
+    const std::optional<double> kept = earlier_scale();
+    const double change = kept ? *kept / double(exposure.radiance_scale) : 0.0;
+    if (change >= 0.5 && change <= 2.0) exposure.radiance_scale = static_cast<float>(*kept);
+    return exposure;
+  }
+
   // By the grid and the sizes of the options.
   void place() {
-    Placement placement = place_probes(scene_, rays_, space_, options_.placement);
+    PlacementOptions wanted = options_.placement;
+    if (earlier_) wanted.kept_grid = earlier_->pack.manifest().grid;
+    Placement placement = place_probes(scene_, rays_, space_, wanted);
     if (placement.sites.empty()) {
       throw BadInput(fmt::format("{}: there is no place for a probe; give --start x,y,z inside the scene or --scale",
                                  options_.scene_file.string()));
@@ -182,7 +211,7 @@ class BakeJob {
     if (!placement.statement.empty()) progress_.note(placement.statement);
     stand(std::move(placement));
     wanted_ = wanted_rooms();
-    note_estimate(wanted_);
+    if (!earlier_ || !options_.only_room.empty()) note_estimate();
   }
 
   // By need.
@@ -267,27 +296,99 @@ class BakeJob {
     return count;
   }
 
-  void note_estimate(const std::vector<bool>& wanted) {
-    const BakeEstimate estimate = estimate_bake(scene_, rays_, options_.light, levels_, probes_in(wanted),
+  // Of probes whose radiance is baked, which is most of the work.
+  void note_estimate() {
+    std::vector<bool> anew = wanted_;
+    for (std::size_t k = 0; k < reuse_.size(); ++k) anew[k] = anew[k] && !reuse_[k].keeps_radiance;
+    const BakeEstimate estimate = estimate_bake(scene_, rays_, options_.light, levels_, probes_in(anew),
                                                 manifest_.probe_positions_m.front());
     progress_.note(fmt::format("{} probes in {} rooms, {:.1f} million texels: about {:.0f} s and {:.0f} MiB on disk",
-                               probes_in(wanted), std::count(wanted.begin(), wanted.end(), true),
+                               probes_in(anew), std::count(anew.begin(), anew.end(), true),
                                static_cast<double>(estimate.texels) * 1e-6, estimate.seconds,
                                static_cast<double>(estimate.bytes_disk) / (1 << 20)));
+  }
+
+  // By room, what of the earlier pack is what would be baked again.
+  void find_what_is_kept(const LightField& light) {
+    reuse_.resize(manifest_.rooms.size());
+    inputs_.rooms.resize(manifest_.rooms.size());
+    if (options_.shares > 0 && !earlier_) return;
+    inputs_.scene = hash_scene(scene_, inputs_.cells);
+    inputs_.light = hash_light(light, inputs_.cells);
+    if (!earlier_) return;
+    const std::vector<std::uint32_t> numbers = numbers_now(earlier_->inputs.light, inputs_.light);
+    if (!options_.only_room.empty()) {  // wanted_rooms() has seen that the earlier rooms are these
+      for (std::size_t k = 0; k < wanted_.size(); ++k) {
+        if (!wanted_[k]) keep_inputs(inputs_.rooms[k], earlier_->inputs.rooms[k], numbers);
+      }
+      return;
+    }
+    Manifest sized = manifest_;
+    for (std::size_t k = 0; k < sized.rooms.size(); ++k) {
+      for (const LevelSize& size : levels_of(k)) {
+        LevelEntry& level = sized.rooms[k].levels.emplace_back();
+        level.geometry_size = static_cast<std::uint32_t>(size.geometry);
+        level.radiance_size = static_cast<std::uint32_t>(size.radiance);
+      }
+    }
+    reuse_ = compare_rooms(*earlier_, sized, inputs_.scene, inputs_.light, options_.light_tolerance);
+    for (std::size_t k = 0; k < reuse_.size(); ++k) {
+      RoomReuse& reuse = reuse_[k];
+      if ((reuse.keeps_geometry || reuse.keeps_radiance) && !is_sound(reuse)) {
+        reuse.keeps_geometry = reuse.keeps_radiance = false;
+        reuse.reason = "what the pack has of it is damaged";
+      }
+      RoomInputs& inputs = inputs_.rooms[k];
+      if (reuse.earlier >= 0) {
+        RoomInputs before;
+        keep_inputs(before, earlier_->inputs.rooms[std::size_t(reuse.earlier)], numbers);
+        if (reuse.keeps_geometry) {
+          inputs.geometry = std::move(before.geometry);
+          inputs.sees_sky = before.sees_sky;
+          inputs.cut_cells = before.cut_cells;
+          inputs.cells = before.cells;
+        }
+        if (reuse.keeps_radiance) inputs.radiance = std::move(before.radiance);
+      }
+      if (!reuse.keeps_radiance) reuse.drift = 0.0f;
+      inputs.drift = reuse.drift;
+      report_.kept.push_back({manifest_.rooms[k].id, reuse.keeps_geometry, reuse.keeps_radiance, reuse.drift, reuse.reason});
+    }
+    const auto whole = std::count_if(reuse_.begin(), reuse_.end(), [](const RoomReuse& r) { return r.keeps_geometry && r.keeps_radiance; });
+    progress_.note(fmt::format("{} of {} rooms are kept as they are in {}", whole, reuse_.size(), options_.pack.string()));
+    if (!options_.target.asked()) note_estimate();
+  }
+
+  void keep_inputs(RoomInputs& to, const RoomInputs& from, const std::vector<std::uint32_t>& numbers) const {
+    to = from;
+    to.radiance.points = IndexSet(inputs_.light.identities.size());
+    from.radiance.points.for_each([&](std::size_t k) {
+      if (k < numbers.size() && numbers[k] != kNoPoint) to.radiance.points.insert(numbers[k]);
+    });
+  }
+
+  bool is_sound(const RoomReuse& reuse) const {
+    try {
+      for (const LevelEntry& level : earlier_->pack.manifest().rooms[std::size_t(reuse.earlier)].levels) earlier_->pack.read_chunk(level);
+      return true;
+    } catch (const BadInput&) {
+      return false;
+    }
   }
 
   void bake_rooms(MapStore& maps, const BakeState& state, const std::vector<bool>& wanted) {
     PackWriter writer(options_.pack);
     std::uint64_t texels = 0;
     for (std::size_t k = 0; k < manifest_.rooms.size(); ++k) {
-      if (!wanted[k]) continue;
+      if (!wanted[k] || reuse_[k].keeps_radiance) continue;
       for (const LevelSize& size : levels_of(k)) texels += std::uint64_t(manifest_.rooms[k].probe_count) * size.radiance * size.radiance;
     }
     progress_.begin("probes", texels, "texels");
     for (std::size_t k = 0; k < manifest_.rooms.size(); ++k) {
       RoomEntry& room = manifest_.rooms[k];
       if (!wanted[k] || room.probe_count == 0) continue;
-      for (const LevelSize& size : levels_of(k)) room.levels.push_back(bake_level(maps, room, size, writer));
+      const std::vector<LevelSize> sizes = levels_of(k);
+      for (std::size_t l = 0; l < sizes.size(); ++l) room.levels.push_back(make_level(maps, k, l, sizes[l], writer));
       if (report_.planned && report_.planned->rooms[k].held_back.measured) {
         room.levels.back().error = report_.planned->rooms[k].held_back.worst();
       }
@@ -296,10 +397,19 @@ class BakeJob {
     if (maps.baked_texels() > 0) {
       report_.seconds_per_million_texels = maps.baking_seconds() * 1e6 / static_cast<double>(maps.baked_texels());
     }
-    if (all_cells_ > 0) report_.connected_fraction = 1.0 - static_cast<double>(cut_cells_) / static_cast<double>(all_cells_);
-    if (sees_sky_) add_feature("sky");
-    if (cut_cells_ > 0) add_feature("cuts");
+    std::uint64_t cut = 0, all = 0;
+    bool sees_sky = false;
+    for (std::size_t k = 0; k < wanted.size(); ++k) {
+      if (!wanted[k]) continue;
+      cut += inputs_.rooms[k].cut_cells;
+      all += inputs_.rooms[k].cells;
+      sees_sky |= inputs_.rooms[k].sees_sky;
+    }
+    if (all > 0) report_.connected_fraction = 1.0 - static_cast<double>(cut) / static_cast<double>(all);
+    if (sees_sky) add_feature("sky");
+    if (cut > 0) add_feature("cuts");
     writer.finish(manifest_);
+    keep_record();
     state.remove();
     report_.plan = fs::path(options_.pack).replace_extension(".plan.png");
     write_png(report_.plan, plan_);
@@ -310,6 +420,16 @@ class BakeJob {
     } else {
       std::error_code ignored;  // that of an earlier pack of this name
       fs::remove(plan_file, ignored);
+    }
+  }
+
+  // For the next bake. After one of a room alone the record is whole only if there was one of the others.
+  void keep_record() {
+    if (options_.only_room.empty() || earlier_) {
+      write_inputs(options_.pack, std::move(inputs_));
+    } else {
+      std::error_code ignored;
+      fs::remove(inputs_file(options_.pack), ignored);
     }
   }
 
@@ -326,14 +446,15 @@ class BakeJob {
     for (std::size_t k = 0; k < manifest_.rooms.size(); ++k) {
       const RoomEntry& room = manifest_.rooms[k];
       if (!wanted_[k]) continue;
+      const RoomReuse& reuse = reuse_[k];
       for (const LevelSize& size : levels_) {
         for (std::uint32_t p = 0; p < room.probe_count; ++p) {
           const glm::dvec3 position = manifest_.probe_positions_m[room.first_probe + p];
-          if (is_ours()) {
+          if (!reuse.keeps_geometry && is_ours()) {
             maps.geometry(position, size.geometry);
             count();
           }
-          if (is_ours()) {
+          if (!reuse.keeps_radiance && is_ours()) {
             maps.radiance(position, size.radiance);
             count();
           }
@@ -342,7 +463,47 @@ class BakeJob {
     }
   }
 
-  LevelEntry bake_level(MapStore& maps, const RoomEntry& room, LevelSize size, PackWriter& writer) {
+  // What the earlier pack has of it is taken from there.
+  LevelEntry make_level(MapStore& maps, std::size_t room_index, std::size_t level, LevelSize size, PackWriter& writer) {
+    const RoomReuse& reuse = reuse_[room_index];
+    const RoomEntry& room = manifest_.rooms[room_index];
+    report_.maps += 2u * room.probe_count;
+    report_.kept_maps += (std::size_t(reuse.keeps_geometry) + std::size_t(reuse.keeps_radiance)) * room.probe_count;
+    if (!reuse.keeps_geometry && !reuse.keeps_radiance) return bake_level(maps, room_index, size, {}, writer);
+    const LevelEntry& before = earlier_->pack.manifest().rooms[std::size_t(reuse.earlier)].levels[level];
+    if (reuse.keeps_radiance && !reuse.keeps_geometry) {
+      const RoomLevel kept = earlier_->pack.read_level(std::size_t(reuse.earlier), level);
+      return bake_level(maps, room_index, size, kept.probes, writer);
+    }
+    LevelEntry entry = before;
+    entry.error = -1.0;
+    if (entry.quantised) add_feature(kQuantisedFeature);
+    if (reuse.keeps_radiance) return entry;
+    std::vector<ProbeRadiance> radiance;
+    for (std::uint32_t k = 0; k < room.probe_count; ++k) {
+      radiance.push_back(bake_radiance_of(maps, room_index, k, size));
+    }
+    const std::vector<std::byte> chunk = replace_radiance(earlier_->pack.read_chunk(before), std::move(radiance), options_.pack.string());
+    entry.bytes_disk = chunk.size();
+    entry.chunk = writer.add_chunk(chunk);
+    return entry;
+  }
+
+  ProbeRadiance bake_radiance_of(MapStore& maps, std::size_t room, std::uint32_t probe, LevelSize size) {
+    stop_if_asked();
+    const glm::dvec3 position = manifest_.probe_positions_m[manifest_.rooms[room].first_probe + probe];
+    ProbeRadiance map = maps.radiance(position, size.radiance, &inputs_.rooms[room].radiance);
+    const std::uint64_t texels = std::uint64_t(size.radiance) * size.radiance;
+    done_texels_ += texels;
+    progress_.advance(texels);
+    return map;
+  }
+
+  // with_radiance: of these maps; all are baked when there are none.
+  LevelEntry bake_level(MapStore& maps, std::size_t room_index, LevelSize size, std::span<const ProbeMap> with_radiance,
+                        PackWriter& writer) {
+    const RoomEntry& room = manifest_.rooms[room_index];
+    RoomInputs& inputs = inputs_.rooms[room_index];
     RoomLevel level;
     level.origin_m = room.origin_m;
     LevelEntry entry;
@@ -351,16 +512,15 @@ class BakeJob {
     for (std::uint32_t k = 0; k < room.probe_count; ++k) {
       stop_if_asked();
       const glm::dvec3 position = manifest_.probe_positions_m[room.first_probe + k];
-      level.probes.push_back({maps.geometry(position, size.geometry), maps.radiance(position, size.radiance)});
-      const ProbeMap& probe = level.probes.back();
+      ProbeMap probe;
+      probe.geometry = maps.geometry(position, size.geometry, &inputs.geometry);
+      probe.radiance = with_radiance.empty() ? bake_radiance_of(maps, room_index, k, size) : with_radiance[k].radiance;
       const std::size_t cut = count_cut_cells(probe.geometry);
-      cut_cells_ += cut;
-      all_cells_ += std::uint64_t(size.geometry) * size.geometry;
-      sees_sky_ |= std::find(probe.geometry.w.begin(), probe.geometry.w.end(), 0.0f) != probe.geometry.w.end();
+      inputs.cut_cells += cut;
+      inputs.cells += std::uint64_t(size.geometry) * size.geometry;
+      inputs.sees_sky |= std::find(probe.geometry.w.begin(), probe.geometry.w.end(), 0.0f) != probe.geometry.w.end();
       entry.bytes_device += device_probe_bytes(size.geometry, size.radiance, cut);
-      const std::uint64_t texels = std::uint64_t(size.radiance) * size.radiance;
-      done_texels_ += texels;
-      progress_.advance(texels);
+      level.probes.push_back(std::move(probe));
     }
     const std::vector<std::byte> chunk = encode_level(level, entry);
     const std::uint64_t tiled = size.geometry < kLeastTiledSide ? 0 : tiled_bytes(decode_chunk(chunk, "the chunk just made"));
@@ -427,8 +587,10 @@ class BakeJob {
   std::vector<Pose> tour_;
   ImageRgb8 plan_;
   BakeReport report_;
-  std::uint64_t done_texels_ = 0, cut_cells_ = 0, all_cells_ = 0, planar_before_ = 0, planar_after_ = 0;
-  bool sees_sky_ = false;
+  std::optional<EarlierBake> earlier_;  // whose rooms may be kept
+  std::vector<RoomReuse> reuse_;        // by room
+  BakeInputs inputs_;                   // of the pack that is made now
+  std::uint64_t done_texels_ = 0, planar_before_ = 0, planar_after_ = 0;
 };
 
 }  // namespace

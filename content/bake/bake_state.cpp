@@ -22,6 +22,7 @@ constexpr const char* kLightFile = "light-cache";
 constexpr const char* kGeometryFile = "geometry";
 constexpr const char* kRadianceFile = "radiance";
 constexpr std::uint64_t kLightFileBytes = 64u << 20;
+constexpr std::uint64_t kInputBytes = 32u << 20;
 constexpr std::size_t kHashBytes = 32;
 constexpr std::uint64_t kKeyFileBytes = 4096;
 
@@ -121,32 +122,32 @@ fs::path BakeState::file(const char* kind, glm::dvec3 position_m, int side) cons
   return folder_ / fmt::format("{}-{}-{}", kind, content_hash(std::as_bytes(std::span(place))).substr(0, 16), side);
 }
 
-std::optional<ProbeGeometry> BakeState::load_geometry(glm::dvec3 position_m, int n) const {
+std::optional<ProbeGeometry> BakeState::load_geometry(glm::dvec3 position_m, int n, MapInputs& inputs) const {
   ProbeGeometry map = sized_geometry(position_m, n);
-  if (!load_map(file(kGeometryFile, position_m, n), map)) return {};
+  if (!load_map(file(kGeometryFile, position_m, n), map, inputs)) return {};
   return map;
 }
 
-std::optional<ProbeRadiance> BakeState::load_radiance(glm::dvec3 position_m, int r) const {
+std::optional<ProbeRadiance> BakeState::load_radiance(glm::dvec3 position_m, int r, MapInputs& inputs) const {
   ProbeRadiance map = sized_radiance(r);
-  if (!load_map(file(kRadianceFile, position_m, r), map)) return {};
+  if (!load_map(file(kRadianceFile, position_m, r), map, inputs)) return {};
   return map;
 }
 
-void BakeState::store(const ProbeGeometry& map) const {
-  store_map(file(kGeometryFile, map.position_m, map.n), map);
+void BakeState::store(const ProbeGeometry& map, const MapInputs& inputs) const {
+  store_map(file(kGeometryFile, map.position_m, map.n), map, inputs);
 }
 
-void BakeState::store(glm::dvec3 position_m, const ProbeRadiance& map) const {
-  store_map(file(kRadianceFile, position_m, map.r), map);
+void BakeState::store(glm::dvec3 position_m, const ProbeRadiance& map, const MapInputs& inputs) const {
+  store_map(file(kRadianceFile, position_m, map.r), map, inputs);
 }
 
 template <typename Map>
-bool BakeState::load_map(const fs::path& file, Map& map) const {
+bool BakeState::load_map(const fs::path& file, Map& map, MapInputs& inputs) const {
   std::size_t expected = kHashBytes;
   for_each_array(map, [&](const auto& array) { expected += std::as_bytes(std::span(array)).size(); });
-  const std::vector<std::byte> bytes = read_hashed(file, expected);
-  if (bytes.size() != expected) return false;
+  const std::vector<std::byte> bytes = read_hashed(file, expected + kInputBytes);
+  if (bytes.size() < expected || !unpack_inputs(std::span(bytes).subspan(expected), inputs)) return false;
   const std::span<const std::byte> payload = std::span(bytes).subspan(kHashBytes);
   std::size_t at = 0;
   for_each_array(map, [&](auto& array) {
@@ -158,12 +159,14 @@ bool BakeState::load_map(const fs::path& file, Map& map) const {
 }
 
 template <typename Map>
-void BakeState::store_map(const fs::path& file, const Map& map) const {
+void BakeState::store_map(const fs::path& file, const Map& map, const MapInputs& inputs) const {
   std::vector<std::byte> bytes(kHashBytes);
   for_each_array(map, [&](const auto& array) {
     const std::span<const std::byte> part = std::as_bytes(std::span(array));
     bytes.insert(bytes.end(), part.begin(), part.end());
   });
+  const std::vector<std::byte> packed = pack_inputs(inputs);
+  bytes.insert(bytes.end(), packed.begin(), packed.end());
   write_hashed(file, std::move(bytes));
 }
 

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "content/bake/rebake/map_inputs.h"
 #include "content/probe/probe_map.h"
 
 namespace probewalk {
@@ -24,21 +25,22 @@ class BakeState {
   // Throws BadInput when the disk is full.
   void store_light(const std::vector<glm::vec3>& values) const;
 
-  // A map by the place it was baked from and its size. Nothing when it is not there or cannot be believed.
-  std::optional<ProbeGeometry> load_geometry(glm::dvec3 position_m, int n) const;
-  std::optional<ProbeRadiance> load_radiance(glm::dvec3 position_m, int r) const;
+  // A map by the place it was baked from and its size, and what it was made of. Nothing when it is not there or cannot be
+  // believed.
+  std::optional<ProbeGeometry> load_geometry(glm::dvec3 position_m, int n, MapInputs& inputs) const;
+  std::optional<ProbeRadiance> load_radiance(glm::dvec3 position_m, int r, MapInputs& inputs) const;
   // Throw BadInput when the disk is full.
-  void store(const ProbeGeometry& map) const;
-  void store(glm::dvec3 position_m, const ProbeRadiance& map) const;
+  void store(const ProbeGeometry& map, const MapInputs& inputs) const;
+  void store(glm::dvec3 position_m, const ProbeRadiance& map, const MapInputs& inputs) const;
   // After the manifest is written.
   void remove() const;
 
  private:
   std::filesystem::path file(const char* kind, glm::dvec3 position_m, int side) const;
   template <typename Map>
-  bool load_map(const std::filesystem::path& file, Map& map) const;
+  bool load_map(const std::filesystem::path& file, Map& map, MapInputs& inputs) const;
   template <typename Map>
-  void store_map(const std::filesystem::path& file, const Map& map) const;
+  void store_map(const std::filesystem::path& file, const Map& map, const MapInputs& inputs) const;
 
   std::filesystem::path folder_;
   std::string key_;

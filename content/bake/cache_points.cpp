@@ -7,20 +7,20 @@
 #include <atomic>
 #include <cmath>
 #include <numbers>
+#include <span>
 #include <unordered_map>
 
 #include "content/bake/patterns.h"
 #include "content/bake/surface_point.h"
 #include "content/error.h"
+#include "content/pack/pack_io.h"
 
 namespace probewalk {
 namespace {
 
 constexpr float kReachPerSpacing = 1.75f;   // five or six points speak at any place
 constexpr float kCellPerReach = 0.5f;       // smaller cells list fewer points in vain, in more lists
-constexpr float kOffPlane = 6.0f;           // distance across the surface counts this much more than along it
 constexpr float kSameFacing = 0.8f;         // cosine above which two points are in each other's way
-constexpr float kLeastFacing = 0.2f;        // cosine below which a point says nothing
 constexpr float kCandidatesPerSquare = 5.0f;
 constexpr float kCandidatesPerLength = 2.0f;  // of a spacing, along thin triangles
 // Nobody sees a place whose hemisphere is nearly all closed this near, or inside a solid: back faces this near. Wrongly wound
@@ -32,8 +32,6 @@ constexpr int kHiddenLeast = 15;
 constexpr float kLookHeight_m = 0.02f;      // thinner things (a rug's edge) do not part a surface
 constexpr float kLookTilt = 0.15f;          // tangent of the angle at which the view along the surface rises
 constexpr float kLookReach = 3.0f;          // in reaches: a wall must be known in the directions beside the nearest, too
-constexpr float kBlockedWeight = 1e-3f;     // of a point that does not see the place
-constexpr float kVanishing = 1e-12f;
 
 // Position among kSectors directions round a point: monotone in the angle, without trigonometry.
 float sector_of(float x, float y) {
@@ -166,10 +164,7 @@ void CachePoints::build_index() {
   cell_m_ = kCellPerReach * reach_m_;
   std::vector<std::pair<std::uint64_t, std::uint32_t>> entries;
   for (std::uint32_t k = 0; k < points_.size(); ++k) {
-    const glm::vec3 p = points_[k].position_m, n = points_[k].normal;
-    // The influence is a flat ellipsoid; its box.
-    const glm::vec3 half =
-        reach_m_ * glm::sqrt(glm::max(glm::vec3(1.0f) - n * n * (1.0f - 1.0f / (kOffPlane * kOffPlane)), 0.0f));
+    const glm::vec3 p = points_[k].position_m, half = influence_m(k);
     const glm::ivec3 low(glm::floor((p - half) / cell_m_)), high(glm::floor((p + half) / cell_m_));
     for (int z = low.z; z <= high.z; ++z) {
       for (int y = low.y; y <= high.y; ++y) {
@@ -221,28 +216,34 @@ float CachePoints::open_fraction(const Point& point, glm::vec3 offset, float tan
 }
 
 glm::vec3 CachePoints::interpolate(const std::vector<glm::vec3>& values, glm::vec3 position_m, glm::vec3 normal) const {
-  const Bucket* bucket = find(cell_key(glm::ivec3(glm::floor(position_m / cell_m_))));
-  if (!bucket) return glm::vec3(0.0f);
-  const float inverse_square = 1.0f / (reach_m_ * reach_m_);
+  glm::vec3 open_sum(0.0f), blocked_sum(0.0f);
+  float blocked_weights = 0.0f;
+  const float open_weights = for_each_weight(position_m, normal, [&](std::uint32_t point, float open, float blocked) {
+    open_sum += values[point] * open;
+    blocked_sum += values[point] * blocked;
+    blocked_weights += blocked;
+  });
+  if (open_weights > kVanishing) return open_sum / open_weights;
+  // No point sees the place: any light is better there than none. Elsewhere one behind a wall has no say at all, or what
+  // changes in a closed room would change the next.
+  return blocked_weights > kVanishing ? blocked_sum / blocked_weights : glm::vec3(0.0f);
+}
+
+glm::vec3 CachePoints::interpolate_seen(const std::vector<glm::vec3>& values, glm::vec3 position_m, glm::vec3 normal) const {
   glm::vec3 sum(0.0f);
-  float weights = 0.0f;
-  for (std::uint32_t m = bucket->first; m < bucket->first + bucket->count; ++m) {
-    const Member& member = members_[m];
-    const glm::vec3 offset = position_m - member.position_m;
-    const float facing = glm::dot(member.normal, normal), across = glm::dot(offset, member.normal);
-    const float straight_square = glm::dot(offset, offset);
-    const float square = (straight_square + (kOffPlane * kOffPlane - 1.0f) * across * across) * inverse_square;
-    if (facing <= kLeastFacing || square >= 1.0f) continue;
-    const Point& point = points_[member.point];
-    const float along_m = std::sqrt(std::max(straight_square - across * across, 0.0f));
-    const float kernel = (1.0f - square) * (1.0f - square);
-    const float turned = (facing - kLeastFacing) / (1.0f - kLeastFacing);
-    const float open = open_fraction(point, offset, along_m);
-    const float weight = kernel * turned * turned * (open + kBlockedWeight);
-    sum += values[member.point] * weight;
-    weights += weight;
-  }
+  const float weights = for_each_weight(position_m, normal, [&](std::uint32_t point, float open, float) { sum += values[point] * open; });
   return weights > kVanishing ? sum / weights : glm::vec3(0.0f);
+}
+
+std::uint64_t CachePoints::identity(std::size_t k) const {
+  static_assert(sizeof(Point) == 9 * sizeof(float) + kSectors, "no padding");
+  return short_hash(std::as_bytes(std::span(&points_[k], 1)));
+}
+
+// The influence is a flat ellipsoid; its box.
+glm::vec3 CachePoints::influence_m(std::size_t k) const {
+  const glm::vec3 n = points_[k].normal;
+  return reach_m_ * glm::sqrt(glm::max(glm::vec3(1.0f) - n * n * (1.0f - 1.0f / (kOffPlane * kOffPlane)), 0.0f));
 }
 
 }  // namespace probewalk

@@ -31,6 +31,7 @@ class DirectLight {
                        std::uint64_t& rays_cast) const;
 
   const Emitters& emitters() const { return emitters_; }
+  const LightGrid& grid() const { return grid_; }
   std::uint64_t rays_cast() const { return grid_.rays_cast(); }  // by the construction
 
  private:

@@ -142,4 +142,30 @@ float EmitterLight::visible_fraction(std::uint32_t emitter, int ray_count, const
   return all > 0.0f ? seen / all : 0.0f;
 }
 
+glm::vec3 EmitterLight::irradiance_by_one(std::uint32_t emitter, std::uint32_t word, const Receiver& receiver,
+                                          std::uint64_t& rays_cast) const {
+  const glm::vec3 origin = receiver.position_m + receiver.geometric_normal * ray_offset_m(receiver.position_m);
+  if (is_patch(emitter)) {
+    const EmissivePatch& patch = emitters_.patches[emitter - emitters_.lights.size()];
+    const EmissivePatch::Sample& sample = patch.samples[word % kPatchSamples];
+    const glm::vec3 value = float(kPatchSamples) * unshadowed_sample(patch, sample, receiver);
+    if (!(strongest_channel(value) > 0.0f)) return glm::vec3(0.0f);
+    ++rays_cast;
+    return reaches(rays_, origin, sample.position_m, ray_offset_m(sample.position_m)) ? value : glm::vec3(0.0f);
+  }
+  const PunctualEmitter& punctual = emitters_.lights[emitter];
+  const glm::vec3 value = unshadowed_light(punctual.light, receiver);
+  if (!(strongest_channel(value) > 0.0f)) return glm::vec3(0.0f);
+  ++rays_cast;
+  if (punctual.light.kind != Light::Kind::kDirectional) {
+    return reaches(rays_, origin, punctual.light.position_m, punctual.lamp_radius_m) ? value : glm::vec3(0.0f);
+  }
+  const glm::vec3 to_light = -punctual.light.direction;
+  glm::vec3 tangent, bitangent;
+  tangent_frame(to_light, tangent, bitangent);
+  const glm::vec2 offset = kSunRadius_rad * disc_sample(int(word % kDiscSamples));
+  const glm::vec3 direction = to_light + tangent * offset.x + bitangent * offset.y;
+  return rays_.occluded(origin, direction, 0.0f, kFarAway_m) ? glm::vec3(0.0f) : value;
+}
+
 }  // namespace probewalk

@@ -36,6 +36,10 @@ class EmitterLight {
   float visible_fraction(std::uint32_t emitter, int ray_count, const Receiver& receiver,
                          std::uint64_t& rays_cast) const;
 
+  // Irradiance (lux) by a single ray to a place of the emitter that the word chooses: right on average over words.
+  glm::vec3 irradiance_by_one(std::uint32_t emitter, std::uint32_t word, const Receiver& receiver,
+                              std::uint64_t& rays_cast) const;
+
  private:
   const Emitters& emitters_;
   const RayScene& rays_;

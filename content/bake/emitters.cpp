@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <span>
 #include <tuple>
 
 #include "content/bake/patterns.h"
 #include "content/bake/surface_point.h"
+#include "content/pack/pack_io.h"
 
 namespace probewalk {
 namespace {
@@ -173,6 +175,33 @@ Emitters find_emitters(const Scene& scene, const RayScene& rays) {
     for (const EmissiveTriangle& t : triangles) emitters.is_patch[t.triangle] = true;
   }
   return emitters;
+}
+
+std::vector<std::uint64_t> emitter_hashes(const Emitters& emitters) {
+  std::vector<std::uint64_t> hashes;
+  std::vector<float> values;
+  const auto add = [&](glm::vec3 v) { values.insert(values.end(), {v.x, v.y, v.z}); };
+  const auto finish = [&] {
+    hashes.push_back(short_hash(std::as_bytes(std::span(values))));
+    values.clear();
+  };
+  for (const PunctualEmitter& emitter : emitters.lights) {
+    const Light& light = emitter.light;
+    values = {static_cast<float>(light.kind), light.range_m, light.inner_cone_rad, light.outer_cone_rad, emitter.lamp_radius_m};
+    for (glm::vec3 v : {light.position_m, light.direction, light.intensity}) add(v);
+    finish();
+  }
+  for (const EmissivePatch& patch : emitters.patches) {
+    values = {patch.radius_m, patch.sample_area_m2, patch.power_cd};
+    add(patch.centre_m);
+    for (const EmissivePatch::Sample& sample : patch.samples) {
+      for (glm::vec3 v : {sample.position_m, sample.normal, sample.weight}) add(v);
+      values.push_back(sample.front_open ? 1.0f : 0.0f);
+      values.push_back(sample.back_open ? 1.0f : 0.0f);
+    }
+    finish();
+  }
+  return hashes;
 }
 
 }  // namespace probewalk

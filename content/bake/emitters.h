@@ -46,4 +46,7 @@ struct Emitters {
 
 Emitters find_emitters(const Scene& scene, const RayScene& rays);
 
+// Of each, first the lights, then the patches: all that decides what it sends, its number and name not counted.
+std::vector<std::uint64_t> emitter_hashes(const Emitters& emitters);
+
 }  // namespace probewalk

@@ -6,6 +6,7 @@
 #include <atomic>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "content/bake/patterns.h"
 #include "content/bake/surface_point.h"
@@ -23,10 +24,41 @@ constexpr float kMaxTailRatio = 0.95f;
 
 using Values = std::vector<glm::vec3>;
 
-glm::dvec3 total(const Values& values) {
-  glm::dvec3 sum(0.0);
-  for (const glm::vec3& v : values) sum += glm::dvec3(v);
-  return sum;
+// Points that light passes between, by the least of each set, whatever the order in which threads join them.
+class PointSets {
+ public:
+  explicit PointSets(std::size_t count) : parents_(count) {
+    for (std::size_t k = 0; k < count; ++k) parents_[k].store(std::uint32_t(k), std::memory_order_relaxed);
+  }
+  std::uint32_t first_of(std::uint32_t point) {
+    for (;;) {
+      std::uint32_t parent = parents_[point].load(std::memory_order_relaxed);
+      if (parent == point) return point;
+      const std::uint32_t above = parents_[parent].load(std::memory_order_relaxed);
+      parents_[point].compare_exchange_weak(parent, above, std::memory_order_relaxed);  // halves the way
+      point = above;
+    }
+  }
+  void join(std::uint32_t a, std::uint32_t b) {
+    for (;;) {
+      a = first_of(a);
+      b = first_of(b);
+      if (a == b) return;
+      if (a < b) std::swap(a, b);
+      std::uint32_t expected = a;
+      if (parents_[a].compare_exchange_weak(expected, b, std::memory_order_relaxed)) return;
+    }
+  }
+
+ private:
+  std::vector<std::atomic<std::uint32_t>> parents_;
+};
+
+// Of each set, at its first point.
+std::vector<glm::dvec3> totals(const Values& values, PointSets& sets) {
+  std::vector<glm::dvec3> sums(values.size(), glm::dvec3(0.0));
+  for (std::size_t k = 0; k < values.size(); ++k) sums[sets.first_of(std::uint32_t(k))] += glm::dvec3(values[k]);
+  return sums;
 }
 
 void add(Values& to, const Values& values) {
@@ -59,11 +91,13 @@ struct IrradianceCache::Gather {
     return values;
   }
 
-  Values gather(const Values& source, int samples, std::uint32_t pass, Values* emitted, std::uint64_t& cast) {
+  // emitted receives what surfaces send by themselves; in sets points are joined that light passes between. Both may be null.
+  Values gather(const Values& source, int samples, std::uint32_t pass, Values* emitted, PointSets* sets, std::uint64_t& cast) {
     Values values(points.size(), glm::vec3(0.0f));
     if (emitted) emitted->assign(points.size(), glm::vec3(0.0f));
-    for_each_point(
-        [&](std::size_t k) { gather_point(k, source, samples, pass, values[k], emitted ? &(*emitted)[k] : nullptr); });
+    for_each_point([&](std::size_t k) {
+      gather_point(k, source, samples, pass, values[k], emitted ? &(*emitted)[k] : nullptr, sets);
+    });
     cast += points.size() * static_cast<std::uint64_t>(samples);
     return values;
   }
@@ -90,7 +124,7 @@ struct IrradianceCache::Gather {
   }
 
   void gather_point(std::size_t k, const Values& source, int samples, std::uint32_t pass, glm::vec3& reflected,
-                    glm::vec3* emitted) const {
+                    glm::vec3* emitted, PointSets* sets) const {
     const CachePoints::Point& point = points[k];
     glm::vec3 tangent, bitangent;
     tangent_frame(point.normal, tangent, bitangent);
@@ -110,7 +144,9 @@ struct IrradianceCache::Gather {
       const SurfacePoint surface = surface_at(scene, hit, direction, hit.t * spread_rad);
       if (surface.unlit) continue;
       if (emitted && !direct.emitters().is_patch[hit.triangle]) own += surface.emission_cd_m2;
-      sum += surface.albedo * points.interpolate(source, surface.position_m, surface.normal);
+      sum += surface.albedo * points.interpolate_seen(source, surface.position_m, surface.normal);
+      if (!sets) continue;
+      points.for_each_seen(surface.position_m, surface.normal, [&](std::uint32_t p) { sets->join(std::uint32_t(k), p); });
     }
     // Cosine-distributed: irradiance = pi * mean radiance; reflected radiance = albedo / pi * irradiance.
     reflected = sum / static_cast<float>(samples);
@@ -133,7 +169,7 @@ IrradianceCache::IrradianceCache(const Scene& scene, const RayScene& rays, const
   const Values direct_values = gather.direct_light(rays_cast_);
   // The series of bounces: each gathers what the one before has added.
   Values emitted;
-  Values last = gather.gather(direct_values, rays_of_bounce(options.samples, 1), 1, &emitted, rays_cast_);
+  Values last = gather.gather(direct_values, rays_of_bounce(options.samples, 1), 1, &emitted, nullptr, rays_cast_);
   indirect_ = emitted;
   if (bounces == 0) {
     indirect_ = gather.smooth(indirect_);
@@ -141,20 +177,25 @@ IrradianceCache::IrradianceCache(const Scene& scene, const RayScene& rays, const
   }
   add(indirect_, last);
   add(last, emitted);
-  glm::dvec3 before = total(last), now = before;
+  Values before = last;
+  PointSets sets(points_.size());
   for (int bounce = 2; bounce <= bounces + 1; ++bounce) {
-    last = gather.gather(last, rays_of_bounce(options.samples, bounce), bounce, nullptr, rays_cast_);
-    if (bounce <= bounces) add(indirect_, last);
-    before = now;
-    now = total(last);
+    const bool is_last = bounce == bounces + 1;
+    if (is_last) before = last;
+    last = gather.gather(last, rays_of_bounce(options.samples, bounce), bounce, nullptr, is_last ? &sets : nullptr, rays_cast_);
+    if (!is_last) add(indirect_, last);
   }
-  // What the bounces beyond would add, each a constant share of the one before.
-  glm::vec3 tail(0.0f);
-  for (int c = 0; c < 3; ++c) {
-    const float ratio = before[c] > 0.0 ? std::min(static_cast<float>(now[c] / before[c]), kMaxTailRatio) : 0.0f;
-    tail[c] = 1.0f / (1.0f - ratio);
+  // What the bounces beyond would add, each a constant share of the one before: of its own in every part of the scene that
+  // no light leaves. A white room is not darker for a black one beside it, and stays as it is when that is painted.
+  const std::vector<glm::dvec3> totals_before = totals(before, sets), totals_now = totals(last, sets);
+  for (std::size_t k = 0; k < indirect_.size(); ++k) {
+    const std::uint32_t part = sets.first_of(std::uint32_t(k));
+    for (int c = 0; c < 3; ++c) {
+      const double was = totals_before[part][c], is = totals_now[part][c];
+      const float ratio = was > 0.0 ? std::min(static_cast<float>(is / was), kMaxTailRatio) : 0.0f;
+      indirect_[k][c] += last[k][c] * (1.0f / (1.0f - ratio));
+    }
   }
-  for (std::size_t k = 0; k < indirect_.size(); ++k) indirect_[k] += last[k] * tail;
   indirect_ = gather.smooth(indirect_);
 }
 

@@ -37,6 +37,7 @@ struct LightField::Impl {
   CachePoints points;
   DirectLight direct;
   IrradianceCache cache;
+  LightListener* listener = nullptr;
   mutable tbb::combinable<std::uint64_t> rays_cast{[] { return std::uint64_t(0); }};
 };
 
@@ -61,6 +62,10 @@ glm::vec3 LightField::outgoing(const SurfaceHit& hit, glm::vec3, glm::vec3 unit_
   const glm::vec3 direct =
       impl_->direct.irradiance(point.position_m, point.geometric_normal, point.normal, impl_->rays_cast.local());
   const glm::vec3 indirect = impl_->cache.indirect(point.position_m, point.normal);
+  if (LightListener* listener = impl_->listener) {
+    listener->lit(point.position_m, impl_->direct.grid().lists_all(point.position_m, point.geometric_normal));
+    impl_->points.for_each_used(point.position_m, point.normal, [&](std::uint32_t p) { listener->used(p); });
+  }
   if (irradiance) *irradiance = direct + indirect;
   return point.emission_cd_m2 + point.albedo * std::numbers::inv_pi_v<float> * (direct + indirect);
 }
@@ -80,6 +85,10 @@ glm::vec3 LightField::along(glm::vec3 origin_m, glm::vec3 unit_direction, float 
   return outgoing(found, origin_m, unit_direction, found.t * spread_rad, irradiance);
 }
 
+glm::vec3 LightField::indirect(glm::vec3 position_m, glm::vec3 normal) const {
+  return impl_->cache.indirect(position_m, normal);
+}
+
 std::uint64_t LightField::rays_cast() const {
   return impl_->points.rays_cast() + impl_->direct.rays_cast() + impl_->cache.rays_cast() +
          impl_->rays_cast.combine(std::plus<>());
@@ -91,6 +100,18 @@ std::size_t LightField::cache_points() const {
 
 const std::vector<glm::vec3>& LightField::cache_values() const {
   return impl_->cache.values();
+}
+
+const CachePoints& LightField::points() const {
+  return impl_->points;
+}
+
+const DirectLight& LightField::direct() const {
+  return impl_->direct;
+}
+
+void LightField::tell(LightListener* listener) const {
+  impl_->listener = listener;
 }
 
 std::string LightField::hash() const {

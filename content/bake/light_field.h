@@ -24,6 +24,19 @@ struct LightOptions {
   int threads = 0;  // 0 = all
 };
 
+class CachePoints;
+class DirectLight;
+
+// Is told what outgoing() reads beside surfaces and rays, from any thread.
+class LightListener {
+ public:
+  virtual ~LightListener() = default;
+  // Light was asked for at a place; by_all: what arrives there was looked for from all emitters alike.
+  virtual void lit(glm::vec3 position_m, bool by_all) = 0;
+  // The value of a cache point counted.
+  virtual void used(std::uint32_t point) = 0;
+};
+
 class LightField {
  public:
   // Builds the irradiance cache (long: reports progress, obeys cancellation). Deterministic, whatever the threads.
@@ -45,12 +58,21 @@ class LightField {
   glm::vec3 along(glm::vec3 origin_m, glm::vec3 unit_direction, float spread_rad, SurfaceHit* hit = nullptr,
                   glm::vec3* irradiance = nullptr) const;
 
+  // Irradiance (lux) at a surface point with unit normal from everything that is not sampled directly: sky, large
+  // emitters, reflected light. Thread-safe.
+  glm::vec3 indirect(glm::vec3 position_m, glm::vec3 normal) const;
+
   // Content hash of everything the cache holds; equal between two builds of the same scene and options.
   std::string hash() const;
   // Rays cast so far: by the cache, and shadow rays by outgoing().
   std::uint64_t rays_cast() const;
   std::size_t cache_points() const;
   const std::vector<glm::vec3>& cache_values() const;
+
+  // What the field is made of, and whom to tell of what is read from it (null = nobody; not while it is read).
+  const CachePoints& points() const;
+  const DirectLight& direct() const;
+  void tell(LightListener* listener) const;
 
  private:
   struct Impl;

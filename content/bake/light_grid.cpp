@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <atomic>
+#include <bit>
 #include <cmath>
 #include <numbers>
 
 #include "content/error.h"
+#include "content/pack/pack_io.h"
 
 namespace probewalk {
 namespace {
@@ -140,11 +142,35 @@ LightGrid::LightGrid(const EmitterLight& emitters, const CachePoints& points, st
   });
 }
 
-LightGrid::Nearby LightGrid::at(glm::vec3 position_m, glm::vec3 geometric_normal) const {
+const LightGrid::Cell* LightGrid::find(glm::vec3 position_m, glm::vec3 geometric_normal) const {
   const auto found = index_.find(key(glm::ivec3(glm::floor(position_m / cell_m_)), face_of(geometric_normal)));
-  if (found == index_.end()) return {all_, {}, 0.0f};
-  const Cell& cell = cells_[found->second];
-  return {cell.listed, cell.doubtful, cell.far_lux};
+  return found == index_.end() ? nullptr : &cells_[found->second];
+}
+
+LightGrid::Nearby LightGrid::at(glm::vec3 position_m, glm::vec3 geometric_normal) const {
+  const Cell* cell = find(position_m, geometric_normal);
+  if (!cell) return {all_, {}, 0.0f};
+  return {cell->listed, cell->doubtful, cell->far_lux};
+}
+
+glm::vec3 LightGrid::corner_m(std::uint64_t key) const {
+  const auto part = [&](int shift) { return static_cast<float>(static_cast<int>(key >> shift & 0xFFFFFu) - (1 << 19)); };
+  return glm::vec3(part(43), part(23), part(3)) * cell_m_;
+}
+
+std::uint64_t LightGrid::hash(std::uint64_t key, const Cell& cell, std::span<const std::uint64_t> emitters, std::uint64_t all) {
+  std::vector<std::uint64_t> words{key, std::bit_cast<std::uint32_t>(cell.far_lux)};
+  if (cell.far_lux > 0.0f) words.push_back(all);
+  for (const Listed& listed : cell.listed) {
+    words.push_back(emitters[listed.emitter]);
+    words.push_back(std::bit_cast<std::uint32_t>(listed.visible));
+  }
+  words.push_back(cell.listed.size());
+  for (const Doubtful& doubtful : cell.doubtful) {
+    words.push_back(emitters[doubtful.emitter]);
+    words.push_back(std::bit_cast<std::uint32_t>(doubtful.sum));
+  }
+  return short_hash(std::as_bytes(std::span(words)));
 }
 
 bool LightGrid::lists(const Nearby& nearby, std::uint32_t emitter) const {

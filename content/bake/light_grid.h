@@ -39,6 +39,16 @@ class LightGrid {
   // Thread-safe. Where there is no cache point around, all emitters are listed.
   Nearby at(glm::vec3 position_m, glm::vec3 geometric_normal) const;
   bool lists(const Nearby& nearby, std::uint32_t emitter) const;
+  // Whether all emitters are listed there, and nothing learned.
+  bool lists_all(glm::vec3 position_m, glm::vec3 geometric_normal) const {
+    return find(position_m, geometric_normal) == nullptr;
+  }
+  // Calls visit(lower corner, side in metres, hash of what is known there) for each cell and way to face, in no order.
+  // emitters: a hash of each emitter; all: of all together.
+  template <typename Visit>
+  void for_each_hash(std::span<const std::uint64_t> emitters, std::uint64_t all, Visit&& visit) const {
+    for (const auto& [key, cell] : index_) visit(corner_m(key), cell_m_, hash(key, cells_[cell], emitters, all));
+  }
   std::uint64_t rays_cast() const { return rays_cast_; }
   std::size_t cells() const { return cells_.size(); }
 
@@ -50,6 +60,9 @@ class LightGrid {
   };
   struct Learned;
   std::uint64_t key(glm::ivec3 cell, int face) const;
+  const Cell* find(glm::vec3 position_m, glm::vec3 geometric_normal) const;
+  glm::vec3 corner_m(std::uint64_t key) const;
+  static std::uint64_t hash(std::uint64_t key, const Cell& cell, std::span<const std::uint64_t> emitters, std::uint64_t all);
 
   float cell_m_ = 1.0f;
   std::vector<Listed> all_;

@@ -20,7 +20,8 @@ Placement place_probes(const Scene& scene, const RayScene& rays, const Space& sp
   const HeadSpace heads(scene, rays, space);
   const double spacing_m = options.spacing_m > 0.0 ? options.spacing_m : typical_spacing_m(rays, heads);
   Placement placement;
-  placement.grid = choose_grid(rays, heads, spacing_m, std::size_t(options.max_probes));
+  const bool is_kept = options.kept_grid && still_serves(*options.kept_grid, heads, std::size_t(options.max_probes));
+  placement.grid = is_kept ? *options.kept_grid : choose_grid(rays, heads, spacing_m, std::size_t(options.max_probes));
   SiteCounts counts;
   placement.sites = choose_sites(placement.grid, rays, space, heads, std::size_t(options.max_probes), counts);
   const ProbeGrid& grid = placement.grid;
@@ -28,7 +29,8 @@ Placement place_probes(const Scene& scene, const RayScene& rays, const Space& sp
       "{} probes on a grid of {} x {} x {} vertices, {:.2f} x {:.2f} x {:.2f} m apart{}: {} moved off their vertex, {} added "
       "where heads saw few, {} vertices near heads served by a neighbour's",
       placement.sites.size(), grid.dims.x, grid.dims.y, grid.dims.z, grid.spacing_m.x, grid.spacing_m.y, grid.spacing_m.z,
-      std::max(grid.spacing_m.x, grid.spacing_m.z) > 1.3 * spacing_m ? fmt::format(" (widened from {:.2f})", spacing_m) : "",
+      is_kept ? " (the earlier bake's)"
+      : std::max(grid.spacing_m.x, grid.spacing_m.z) > 1.3 * spacing_m ? fmt::format(" (widened from {:.2f})", spacing_m) : "",
       counts.moved, counts.added, counts.shared);
   return placement;
 }

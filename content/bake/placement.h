@@ -18,6 +18,8 @@
 
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "content/scene/ray_scene.h"
@@ -49,6 +51,9 @@ struct Placement {
 struct PlacementOptions {
   double spacing_m = 0.0;  // 0 = chosen from the rooms' sizes
   int max_probes = 200;    // spacing is widened until at most this many are needed
+  // The lines of an earlier bake, to stay on as long as they cover where heads are now: what has not changed keeps its
+  // probes then.
+  std::optional<ProbeGrid> kept_grid;
 };
 
 Placement place_probes(const Scene& scene, const RayScene& rays, const Space& space, const PlacementOptions& options);

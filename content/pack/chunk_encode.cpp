@@ -113,6 +113,14 @@ Section make_section(ChunkSection kind, const RoomLevel& level, const ChunkCount
   return section;
 }
 
+std::vector<std::byte> join_sections(const ChunkCounts& counts, const glm::dvec3& origin_m, const std::vector<Section>& sections) {
+  ChunkHeader header{counts, origin_m, {}};
+  for (const Section& section : sections) header.sections.push_back(section.entry);
+  std::vector<std::byte> chunk = write_chunk_header(header);
+  for (const Section& section : sections) chunk.insert(chunk.end(), section.stored.begin(), section.stored.end());
+  return chunk;
+}
+
 }  // namespace
 
 std::vector<std::byte> encode_chunk(const RoomLevel& level, SampleCoding samples, SampleSizes* sizes) {
@@ -145,11 +153,33 @@ std::vector<std::byte> encode_chunk(const RoomLevel& level, SampleCoding samples
     sections.erase(quantised ? sections.begin() + 1 : sections.end() - 1);
   }
 
-  ChunkHeader header{counts, level.origin_m, {}};
-  for (const Section& section : sections) header.sections.push_back(section.entry);
-  std::vector<std::byte> chunk = write_chunk_header(header);
-  for (const Section& section : sections) chunk.insert(chunk.end(), section.stored.begin(), section.stored.end());
-  return chunk;
+  return join_sections(counts, level.origin_m, sections);
+}
+
+std::vector<std::byte> replace_radiance(std::span<const std::byte> chunk, std::vector<ProbeRadiance> radiance,
+                                        const std::string& source) {
+  const ChunkHeader header = read_chunk_header(chunk, source);
+  RoomLevel level{header.room_origin_m, {}};
+  if (radiance.size() != header.counts.probes) throw BadInput(source + ": it has another number of probes than radiance maps");
+  for (ProbeRadiance& map : radiance) {
+    if (map.r != static_cast<int>(header.counts.radiance_r) || map.rgb9e5.size() != mip_texel_count(header.counts) ||
+        map.texel_w.size() != texel_count(header.counts)) {
+      throw BadInput(source + ": its radiance maps have another size");
+    }
+    level.probes.push_back({{}, std::move(map)});
+  }
+  std::vector<Section> sections;
+  std::size_t at = chunk_header_bytes(header.sections.size());
+  for (const SectionEntry& entry : header.sections) {
+    if (entry.kind == ChunkSection::kRadiance || entry.kind == ChunkSection::kTexelW) {
+      sections.push_back(make_section(entry.kind, level, header.counts));
+    } else {
+      const auto stored = chunk.subspan(at, entry.stored_bytes);
+      sections.push_back({entry, {stored.begin(), stored.end()}});
+    }
+    at += entry.stored_bytes;
+  }
+  return join_sections(header.counts, header.room_origin_m, sections);
 }
 
 }  // namespace probewalk

@@ -16,4 +16,8 @@ std::string content_hash(std::span<const std::byte> bytes) {
   return hex;
 }
 
+std::uint64_t short_hash(std::span<const std::byte> bytes, std::uint64_t seed) {
+  return XXH3_64bits_withSeed(bytes.data(), bytes.size(), seed);
+}
+
 }  // namespace probewalk

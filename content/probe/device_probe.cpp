@@ -48,6 +48,7 @@ struct Cell {
     return static_cast<std::size_t>(y0 + sv * b) * (map.n + 1) + static_cast<std::size_t>(x0 + su * a);
   }
   float w(int a, int b) const { return map.w[vertex(a, b)]; }
+  bool is_on_fold() const { return upper_low != upper_high; }
 
   // Edge bytes, oriented along growing local coordinates (the diagonal from (1, 0) to (0, 1)).
   static std::uint8_t oriented(std::uint8_t edge, bool forward) {
@@ -102,16 +103,13 @@ std::uint32_t pack_slopes(std::array<float, 2> slopes, float w) {
   return snorm(slopes[0]) | snorm(slopes[1]) << 16;
 }
 
-struct CutFlags {
-  std::uint32_t flags;  // as in the record's word 1
-  std::array<std::uint8_t, 5> edges;
-};
+// Edges in the order of a cut record.
+std::array<std::uint8_t, 5> edges_of(const Cell& cell) {
+  return {cell.along_u(0), cell.along_v(0), cell.diagonal(), cell.along_v(1), cell.along_u(1)};
+}
 
-CutFlags cut_flags(const Cell& cell) {
-  const std::array<std::uint8_t, 5> e{cell.along_u(0), cell.along_v(0), cell.diagonal(), cell.along_v(1),
-                                      cell.along_u(1)};
-  const auto cut = [&](int k) { return static_cast<std::uint32_t>(e[k] != kConnected); };
-  return {cut(0) | cut(2) << 1 | cut(1) << 2 | cut(3) << 4 | cut(2) << 5 | cut(4) << 6, e};
+bool has_cut(const std::array<std::uint8_t, 5>& edges) {
+  return std::any_of(edges.begin(), edges.end(), [](std::uint8_t edge) { return edge != kConnected; });
 }
 
 constexpr int kCellsAtOnce = 8;  // a row has a multiple of them
@@ -130,19 +128,24 @@ bool any_cut(const ProbeGeometry& g, int i, int j) {
           edges(g.edges_vertical, left + 1) | edges(g.edges_diagonal, cell)) != 0;
 }
 
-void append_cut_record(const Cell& cell, const CutFlags& cut, std::vector<std::uint32_t>& words) {
-  std::uint32_t fractions = 0;
-  for (int k = 0; k < 5; ++k) {
-    fractions |= static_cast<std::uint32_t>(std::max<int>(cut.edges[k], 1) - 1) << (6 * k);
-  }
-  words.push_back(fractions);
-  words.push_back(cut.flags);
-  constexpr int corners[2][3][2] = {{{0, 0}, {1, 0}, {0, 1}}, {{1, 1}, {1, 0}, {0, 1}}};
-  for (int high = 0; high < 2; ++high) {
-    const bool upper = high ? cell.upper_high : cell.upper_low;
-    for (const auto& c : corners[high]) {
-      words.push_back(pack_slopes(vertex_slopes(cell, c[0], c[1], upper), cell.w(c[0], c[1])));
-    }
+// Of a cell on the fold what its high triangle needs goes to `fold`, and its record's word 4 is where it begins there.
+void append_cut_record(const Cell& cell, const std::array<std::uint8_t, 5>& edges, std::vector<std::uint32_t>& words,
+                       std::vector<std::uint32_t>& fold) {
+  static_assert(kEdgeCodes == kCutSteps + 1 && kConnected == 0);
+  std::uint32_t digits = 0;
+  for (std::size_t k = edges.size(); k-- > 0;) digits = digits * kEdgeCodes + edges[k];
+  words.push_back(digits);
+  const auto slopes = [&](int a, int b, bool upper) {
+    return pack_slopes(vertex_slopes(cell, a, b, upper), cell.w(a, b));
+  };
+  for (const auto& [a, b] : {std::pair(0, 0), std::pair(1, 0), std::pair(0, 1)})
+    words.push_back(slopes(a, b, cell.upper_low));
+  if (cell.is_on_fold()) {
+    words.push_back(static_cast<std::uint32_t>(fold.size()));
+    for (const auto& [a, b] : {std::pair(1, 0), std::pair(0, 1), std::pair(1, 1)})
+      fold.push_back(slopes(a, b, cell.upper_high));
+  } else {
+    words.push_back(slopes(1, 1, cell.upper_high));
   }
 }
 
@@ -156,7 +159,7 @@ void split_position(glm::dvec3 position_m, glm::vec3& hi_m, glm::vec3& lo_m) {
 std::size_t count_cut_cells(const ProbeGeometry& geometry) {
   std::size_t count = 0;
   for (int j = 0; j < geometry.n; ++j) {
-    for (int i = 0; i < geometry.n; ++i) count += cut_flags(Cell(geometry, i, j)).flags != 0;
+    for (int i = 0; i < geometry.n; ++i) count += has_cut(edges_of(Cell(geometry, i, j)));
   }
   return count;
 }
@@ -175,7 +178,8 @@ std::uint64_t device_probe_bytes(int n, int r, std::size_t cut_cells) {
   const std::uint64_t vertices = static_cast<std::uint64_t>(f32::pyramid_begin(n, false));
   const auto pyramid = static_cast<std::uint64_t>(f32::pyramid_words(log2_of(n)));
   const std::uint64_t radiance = mip_chain_texels(r) + static_cast<std::uint64_t>(r) * r / 2;
-  return 4 * (vertices + pyramid + n2 / 16 + kCutRecordWords * cut_cells + radiance);
+  const std::uint64_t on_fold = std::min<std::uint64_t>(cut_cells, 2 * static_cast<std::uint64_t>(n));
+  return 4 * (vertices + pyramid + n2 / 16 + kCutRecordWords * cut_cells + kFoldRecordWords * on_fold + radiance);
 }
 
 std::uint64_t least_device_probe_bytes(int n, int r) {
@@ -229,6 +233,8 @@ DeviceProbe build_device_probe(const ProbeMap& map, PyramidMaker maker, DeviceSa
   for (const float w : g.w) top_bits = std::max(top_bits, std::bit_cast<std::uint32_t>(w));
   auto top = std::bit_cast<float>(top_bits);
   std::uint32_t cut_cells = 0;
+  std::vector<std::uint32_t> fold;
+  std::vector<std::size_t> on_fold;  // their records
   for (std::size_t first = 0; first < cells; first += kCellsAtOnce) {
     const std::size_t mask = masks + first / 32 * 2;
     if (first % 32 == 0) words[mask + 1] = cut_cells;
@@ -236,14 +242,17 @@ DeviceProbe build_device_probe(const ProbeMap& map, PyramidMaker maker, DeviceSa
     if (!any_cut(g, i, j)) continue;
     for (int k = 0; k < kCellsAtOnce; ++k) {
       const Cell cell(g, i + k, j);
-      const CutFlags cut = cut_flags(cell);
-      if (cut.flags == 0) continue;
+      const std::array<std::uint8_t, 5> edges = edges_of(cell);
+      if (!has_cut(edges)) continue;
       words[mask] |= 1u << (first % 32 + static_cast<unsigned>(k));
-      append_cut_record(cell, cut, words);
+      if (cell.is_on_fold()) on_fold.push_back(words.size());
+      append_cut_record(cell, edges, words, fold);
       ++cut_cells;
       top = std::max(top, std::max({cell.w(0, 0), cell.w(1, 0), cell.w(0, 1), cell.w(1, 1)}) * kCutExtension);
     }
   }
+  for (const std::size_t record : on_fold) words[record + 4] += static_cast<std::uint32_t>(words.size() - record);
+  words.insert(words.end(), fold.begin(), fold.end());
   if (tiles) {
     place_tiles(*tiles, static_cast<std::uint32_t>(words.size()), words);
     words.insert(words.end(), tiles->floats.begin(), tiles->floats.end());

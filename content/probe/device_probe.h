@@ -41,7 +41,8 @@ WordRange pyramid_range(const ProbeRecord& record);
 // The words must outlive the record's use.
 ProbeRecord record_in_memory(const DeviceProbe& probe);
 
-// Bytes of the words of a probe of n cells and r texels a side, with samples as floats: the most that it takes.
+// Bytes of the words of a probe of n cells and r texels a side, at most: with samples as floats, and which of the cut
+// cells lie on the fold, and take a little more, is not asked for.
 std::uint64_t device_probe_bytes(int n, int r, std::size_t cut_cells);
 // The least that a probe without cuts takes with samples in tiles.
 std::uint64_t least_device_probe_bytes(int n, int r);

@@ -69,6 +69,12 @@ void to_metres(Scene& scene, bool recentre) {
   for (AuthoredRoom& room : scene.rooms) {
     room.lower_m = room.lower_m * scale - origin;
     room.upper_m = room.upper_m * scale - origin;
+    for (PlanLoop& loop : room.outline) {
+      for (glm::dvec2& corner : loop) corner = corner * scale - glm::dvec2(origin.x, origin.z);
+    }
+  }
+  for (RoomEdit& edit : scene.room_edits) {
+    for (glm::dvec2* end : {&edit.from_m, &edit.to_m}) *end = *end * scale - glm::dvec2(origin.x, origin.z);
   }
   if (scene.authored_start_m) scene.authored_start_m = *scene.authored_start_m * scale - origin;
   scene.bounds = bounds_of(scene.positions_m);

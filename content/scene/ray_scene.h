@@ -19,6 +19,16 @@ struct SurfaceHit {
   glm::vec3 geometric_normal{0.0f};                  // unit, not flipped towards the ray
 };
 
+// Is told of every ray, from any thread. What a ray's answer depends on is the surfaces along the way that it names.
+class RayListener {
+ public:
+  virtual ~RayListener() = default;
+  // A ray whose first hit is at t_end, or that met nothing up to there (infinity: nothing at all).
+  virtual void passed(glm::vec3 origin_m, glm::vec3 direction, float t_end) = 0;
+  // A ray that asked whether it is occluded: by the surface at this place, and perhaps by others, which is all the same.
+  virtual void blocked(glm::vec3 at_m) = 0;
+};
+
 class RayScene {
  public:
   // `isa` pins Embree's instruction set ("" = its own choice). The scene must outlive this object.
@@ -34,9 +44,13 @@ class RayScene {
 
   const Scene& scene() const { return scene_; }
 
+  // Whom to tell of rays from now on; null = nobody. Not while rays are cast.
+  void tell(RayListener* listener) const { listener_ = listener; }
+
  private:
   struct Impl;
   const Scene& scene_;
+  mutable RayListener* listener_ = nullptr;
   std::unique_ptr<Impl> impl_;
 };
 

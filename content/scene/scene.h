@@ -87,12 +87,29 @@ struct Sky {
   }
 };
 
-// A room that the author named (node extras or rooms.json), as axis-aligned boxes.
+// A closed line on a plan: x and z of its corners, the last joined to the first.
+using PlanLoop = std::vector<glm::dvec2>;
+
+// A room that the author named (node extras or a rooms file): an axis-aligned box, or what stands on an outline.
 struct AuthoredRoom {
   std::string id;    // [a-z0-9-]{1,64}
   std::string name;  // for people
   glm::dvec3 lower_m{0.0};
   glm::dvec3 upper_m{0.0};
+  std::vector<PlanLoop> outline;  // within the box, even-odd; empty = the box
+};
+
+// A correction of rooms, the author's or those that are found; in the order of the file, by the ids of then.
+struct RoomEdit {
+  enum class Kind {
+    kRename,  // rooms[0] gets another id or name
+    kMerge,   // all become one
+    kSplit,   // rooms[0] is cut along a line; what lies to the right of it, seen from above, is the new room
+  };
+  Kind kind = Kind::kRename;
+  std::vector<std::string> rooms;  // ids
+  std::string id, name;            // of the result or the new room; empty = as they are, or made up
+  glm::dvec2 from_m{0.0}, to_m{0.0};
 };
 
 struct Bounds {
@@ -114,6 +131,7 @@ struct Scene {
   std::vector<Light> lights;
   Sky sky;
   std::vector<AuthoredRoom> rooms;
+  std::vector<RoomEdit> room_edits;
   std::optional<glm::dvec3> authored_start_m;  // floor or eye position that the author gave
   Bounds bounds;
   double scale = 1.0;               // what positions in the file were multiplied by
@@ -136,8 +154,8 @@ struct SceneLoadOptions {
 // Beside what glTF defines, `extras` say what it has no words for; all lengths in file units, radiances in cd/m^2:
 // - scene: "probewalk_sky": {"zenith": [r, g, b], "horizon": [...], "ground": [...]}, "probewalk_start": [x, y, z]
 // - node: "probewalk_room": "Name" with "probewalk_room_min" and "probewalk_room_max", a box in the node's own space.
-// A rooms file (`rooms_file`, else rooms.json beside the scene) wins over the nodes' rooms:
-// {"rooms": [{"id": "hall", "name": "Hall", "min": [x, y, z], "max": [x, y, z]}]}.
+// A rooms file (`rooms_file`, else rooms.json beside the scene) wins over the nodes' rooms; content/scene/gltf/rooms_file.h
+// says what stands in it.
 //
 // A scene without light (no light source, no sky, emission too weak to see by, not everything unlit) is given the
 // default of default_light.h, which adds emissive panels to its triangles; light_statement says so.

@@ -47,6 +47,7 @@ struct RoomRegion {
   std::string id;    // [a-z0-9-]{1,64}, unique
   std::string name;  // for people
   Bounds bounds;     // of the room's air; rooms may overlap, the first that holds a point wins
+  std::vector<PlanLoop> outline;  // the author's, even-odd; empty = the bounds'
 };
 
 struct Portal {

@@ -26,12 +26,13 @@
 //                                    within kPlanarTolerance of the plane through its corners next to the map's centre:
 //                                    the ray meets that instead of the cells
 //   n^2/32 * 2         per 32 cells: mask of cells with a cut, number of such cells before
-//   8 per cut cell     cut record, quadrant-local (cell corner nearest the map's centre is (0, 0)):
-//     [0] fractions, 6 bits each: (0,0)-(1,0), (0,0)-(0,1), (1,0)-(0,1), (1,0)-(1,1), (0,1)-(1,1)
-//     [1] disconnected edges: bits 0..2 low triangle (corners (0,0), (1,0), (0,1); edges 01, 12, 20),
-//         bits 4..6 high triangle (corners (1,1), (1,0), (0,1); edges 01, 12, 20)
-//     [2..4] low, [5..7] high triangle: per corner the surface's slopes dw per cell step along U and V, snorm16 pair in
-//         units of kSlopeClamp * w(corner)
+//   5 per cut cell     cut record, quadrant-local (cell corner nearest the map's centre is (0, 0)):
+//     [0] the edges (0,0)-(1,0), (0,0)-(0,1), (1,0)-(0,1), (1,0)-(1,1), (0,1)-(1,1) as digits to base kEdgeCodes,
+//         lowest first: 0 = connected, else 1 + the fraction of the cut in 1/64, rounded down
+//     [1..4] corners (0,0), (1,0), (0,1), (1,1): the surface's slopes dw per cell step along U and V, snorm16 pair in
+//         units of kSlopeClamp * w(corner). A cell on the fold, whose two triangles are in octants of their own, has in
+//         [4] how many words behind [0] those of (1,0), (0,1) and (1,1) in the high triangle's octant are instead
+//   3 per cut cell on the fold: those
 //   81 per tile of floats: w at its vertices, float bits, row-major
 //
 // Radiance block of a probe of r = 2^r_log2 texels a side:
@@ -56,7 +57,9 @@ PW_CONSTANT int kStartLevel = 5;
 // Added to a walk's level: planar entries are gone through cell by cell all the same, which gives the very bits of a
 // walk without a pyramid.
 PW_CONSTANT int kWithoutPlanes = 16;
-PW_CONSTANT int kCutRecordWords = 8;
+PW_CONSTANT int kCutRecordWords = 5;
+PW_CONSTANT int kFoldRecordWords = 3;
+PW_CONSTANT pw_uint kEdgeCodes = 65u;
 // Flags of a ProbeRecord.
 PW_CONSTANT pw_uint kFlagCuts = 1u;
 PW_CONSTANT pw_uint kFlagTiledSamples = 2u;

@@ -111,9 +111,36 @@ PW_FUNCTION real2 unpack_slopes(pw_uint word) {
   return real2(real(x), real(y)) * real(kSlopeStep);
 }
 
-// Fraction number k of a cut record: where along its edge the surface ends.
-PW_FUNCTION real cut_fraction(pw_uint word, int k) {
-  return (real((word >> pw_uint(6 * k)) & 63u) + real(0.5)) / real(64);
+// The edges of a cut record (probe_layout.h).
+struct CutEdges {
+  pw_uint low_u, low_v, diagonal, high_v, high_u;
+};
+
+PW_FUNCTION CutEdges cut_edges(pw_uint word) {
+  CutEdges edges;
+  edges.low_u = word % kEdgeCodes;
+  word /= kEdgeCodes;
+  edges.low_v = word % kEdgeCodes;
+  word /= kEdgeCodes;
+  edges.diagonal = word % kEdgeCodes;
+  word /= kEdgeCodes;
+  edges.high_v = word % kEdgeCodes;
+  edges.high_u = word / kEdgeCodes;
+  return edges;
+}
+
+// Disconnected edges of a triangle: bits for those from its corner 0 to 1, 1 to 2, 2 to 0 (corner 0 is (0, 0) or (1, 1),
+// the others (1, 0) and (0, 1)).
+PW_FUNCTION int cut_mask(CutEdges edges, bool high) {
+  int mask = edges.diagonal != 0u ? 2 : 0;
+  if ((high ? edges.high_v : edges.low_u) != 0u) mask |= 1;
+  if ((high ? edges.high_u : edges.low_v) != 0u) mask |= 4;
+  return mask;
+}
+
+// Where along its edge the surface ends.
+PW_FUNCTION real cut_fraction(pw_uint code) {
+  return (real(max(int(code) - 1, 0)) + real(0.5)) / real(64);
 }
 
 // Where a linear function that is a at 0 and b at 1 changes sign; 1 when it does not.
@@ -125,10 +152,10 @@ PW_FUNCTION real sign_change(real a, real b) {
 
 // A triangle with disconnected edges: cut lines split it into regions, each with its own vertex's plane. The ray's
 // piece runs from p0 (w r0, lambda l0) to p1 in the cell's unit square. corner_w: w at v0, v1, v2.
-PW_FUNCTION bool meet_cut_triangle(pw_uvec2 geometry, int record, bool high, int mask, real3 corner_w,
+PW_FUNCTION bool meet_cut_triangle(pw_uvec2 geometry, int record, CutEdges edges, bool high, bool on_fold, real3 corner_w,
                                    real l0, real r0, real2 p0, real l1, real r1, real2 p1, PW_INOUT(bool) known,
                                    PW_INOUT(Meeting) m) {
-  pw_uint fractions = pw_word(geometry, record);
+  const int mask = cut_mask(edges, high);
   real2 v0 = high ? real2(1, 1) : real2(0, 0);
   real2 v1 = real2(1, 0);
   real2 v2 = real2(0, 1);
@@ -140,10 +167,10 @@ PW_FUNCTION bool meet_cut_triangle(pw_uvec2 geometry, int record, bool high, int
   b.y = high ? real(1) - p1.y : p1.x;
   b.z = high ? real(1) - p1.x : p1.y;
   b.x = real(1) - b.y - b.z;
-  int first = record + (high ? 5 : 2);
-  real2 slope0 = unpack_slopes(pw_word(geometry, first)) * corner_w.x;
-  real2 slope1 = unpack_slopes(pw_word(geometry, first + 1)) * corner_w.y;
-  real2 slope2 = unpack_slopes(pw_word(geometry, first + 2)) * corner_w.z;
+  int first = high && on_fold ? record + int(pw_word(geometry, record + 4)) : record + 2;  // of (1, 0), (0, 1), (1, 1)
+  real2 slope0 = unpack_slopes(pw_word(geometry, high ? first + 2 : record + 1)) * corner_w.x;
+  real2 slope1 = unpack_slopes(pw_word(geometry, first)) * corner_w.y;
+  real2 slope2 = unpack_slopes(pw_word(geometry, first + 1)) * corner_w.z;
 
   // Two disconnected edges leave one vertex alone: one cut line through the edges' fractions, the other two vertices
   // share a plane. Else three regions, each nearest to its vertex.
@@ -153,9 +180,9 @@ PW_FUNCTION bool meet_cut_triangle(pw_uvec2 geometry, int record, bool high, int
   real lone_w = real(0), pair_w = real(0);
   real2 lone_at = v0, lone_slope = slope0, pair_at = v1, pair_slope = slope1;
   if (lone) {
-    real f01 = high ? real(1) - cut_fraction(fractions, 3) : cut_fraction(fractions, 0);
-    real f12 = cut_fraction(fractions, 2);
-    real f20 = high ? cut_fraction(fractions, 4) : real(1) - cut_fraction(fractions, 1);
+    real f01 = high ? real(1) - cut_fraction(edges.high_v) : cut_fraction(edges.low_u);
+    real f12 = cut_fraction(edges.diagonal);
+    real f20 = high ? cut_fraction(edges.high_u) : real(1) - cut_fraction(edges.low_v);
     // Parts of the edges to the next two vertices that the lone vertex owns.
     real own_next, own_last;
     real2 a2, b2;

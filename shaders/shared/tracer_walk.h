@@ -227,14 +227,13 @@ PW_FUNCTION bool walk_segment(ProbeRecord probe, OctantSegment s, real t_start, 
         r1 = w_in + (w_out - w_in) * at;
         p1 = p_in + (p_out - p_in) * at;
       }
-      pw_uint flags = record < 0 ? 0u : pw_word(geometry, record + 1);
+      CutEdges edges = cut_edges(record < 0 ? 0u : pw_word(geometry, record));
       for (int part = 0; part < 2; ++part) {
-        int mask = int(flags >> (high ? 4u : 0u)) & 7;
         real w_corner = high ? w11 : w00;
-        m.cut = mask != 0;
+        m.cut = cut_mask(edges, high) != 0;
         if (m.cut) {
-          ended = meet_cut_triangle(geometry, record, high, mask, real3(w_corner, w10, w01), l0, r0, p0, l1, r1, p1,
-                                    state.known, m);
+          ended = meet_cut_triangle(geometry, record, edges, high, on_fold, real3(w_corner, w10, w01), l0, r0, p0, l1,
+                                    r1, p1, state.known, m);
         } else if (w_corner > real(0) || w10 > real(0) || w01 > real(0)) {
           real gu = high ? w11 - w01 : w10 - w00, gv = high ? w11 - w10 : w01 - w00;
           real2 from_corner = high ? real2(1, 1) : real2(0, 0);

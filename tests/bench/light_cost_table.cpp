@@ -22,6 +22,7 @@
 #include <fstream>
 #include <map>
 #include <numbers>
+#include <optional>
 #include <random>
 #include <stdexcept>
 #include <string>
@@ -167,6 +168,7 @@ struct Texel {
   double baked = 0.0;
   Moments direct, indirect;
   double one_direct = 0.0, all_direct = 0.0;  // at the first place: as baked, and by every emitter
+  double cached = 0.0;                        // indirect light there, as the bake's cache has it
   double mean() const { return direct.mean() + indirect.mean(); }
 };
 
@@ -181,6 +183,9 @@ struct Row {
   double path_cpu_s = 0.0;      // all texels of the run at that error
   double path_rays_per_texel = 0.0;
   double direct_error = 0.0, direct_energy = 0.0;  // of the choice among lights, against rays to every one
+  double cached_error = 0.0, cached_energy = 0.0;  // of the cache alone: RMS over all light, its energy over the paths'
+  double own_noise = 0.0, own_energy = 0.0;        // of the judging paths: RMS, standard error of the energy ratio
+  double texel_error = 0.0;                        // RMS of the rest: lights chosen, and how a texel is sampled
   std::size_t judged = 0, at_edges = 0;
 };
 
@@ -210,7 +215,8 @@ class Comparison {
     options.samples = sizes_.samples;
     options.threads = threads;
     const Clock start;
-    const LightField light(scene_, rays_, options, progress_);
+    light_.emplace(scene_, rays_, options, progress_);
+    const LightField& light = *light_;
     const Clock lit;
     maps_.clear();
     std::uint64_t cast = 0;
@@ -260,6 +266,8 @@ class Comparison {
       std::uint64_t cast = 0;
       texels[t].one_direct = tracer.direct(places[t][0], cast);
       texels[t].all_direct = tracer.direct_by_all(places[t][0]);
+      const glm::vec3 lux = light_->indirect(places[t][0].position_m, places[t][0].normal);
+      texels[t].cached = luminance(places[t][0].albedo * std::numbers::inv_pi_v<float> * lux);
     });
     const Clock checked;
     tbb::parallel_for(std::size_t(0), texels.size(), [&](std::size_t t) {
@@ -307,6 +315,17 @@ class Comparison {
       direct += texel.direct.variance() / scale;
       indirect += texel.indirect.variance() / scale;
     }
+    double cached = 0.0, by_paths = 0.0, cached_square = 0.0, rest_square = 0.0;
+    for (const Texel& texel : texels) {
+      const double scale = double(texels.size()) * (texel.mean() * texel.mean() + dark * dark);
+      const double off = texel.cached - texel.indirect.mean(), rest = texel.baked - texel.mean() - off;
+      cached += texel.cached, by_paths += texel.indirect.mean();
+      cached_square += off * off / scale;
+      rest_square += rest * rest / scale;
+    }
+    row_.cached_energy = by_paths > 0.0 ? cached / by_paths : 1.0;
+    row_.cached_error = std::sqrt(std::max(cached_square - indirect / sizes_.paths, 0.0));
+    row_.texel_error = std::sqrt(std::max(rest_square - direct / kDirectReference, 0.0));
     double chosen = 0.0, all = 0.0, off = 0.0;
     for (const Texel& texel : texels) {
       chosen += texel.one_direct, all += texel.all_direct;
@@ -317,6 +336,12 @@ class Comparison {
     // What the judge is off by itself is not the bake's.
     const double own = indirect / sizes_.paths + direct / kDirectReference;
     const double error = std::max(square - own, 0.25 * own);
+    double variance_of_sum = 0.0;
+    for (const Texel& texel : texels) {
+      variance_of_sum += texel.indirect.variance() / sizes_.paths + texel.direct.variance() / kDirectReference;
+    }
+    row_.own_noise = std::sqrt(own);
+    row_.own_energy = std::sqrt(variance_of_sum) / followed;
     row_.baked_error = std::sqrt(error);
     const auto variance = [&](double n) { return direct / std::min(n, double(kDirectPlaces)) + indirect / n; };
     row_.paths = 1;
@@ -335,6 +360,7 @@ class Comparison {
   SilentProgress progress_;
   const Scene scene_;
   const RayScene rays_;
+  std::optional<LightField> light_;
   std::vector<glm::dvec3> probes_m_;
   std::vector<ProbeRadiance> maps_;
   Row row_;
@@ -356,6 +382,11 @@ void print(const Row& row) {
              row.baked_energy);
   fmt::print("  direct light chosen: energy {:.4f} of that by rays to every light, mean error {:.4f} of it\n",
              row.direct_energy, row.direct_error);
+  fmt::print("  cached light alone: energy {:.4f} of the paths', RMS error {:.4f} of all light; the rest (lights chosen, "
+             "texels sampled): {:.4f}\n",
+             row.cached_energy, row.cached_error, row.texel_error);
+  fmt::print("  the paths' own noise, deducted above: RMS {:.4f}, and {:.4f} of the energy{}\n", row.own_noise, row.own_energy,
+             row.own_noise > row.baked_error ? "; it is larger than the error: --paths should be raised" : "");
   fmt::print("  threads 1 -> 2: cache {:.2f} -> {:.2f} s ({:.2f}x), maps {:.2f} -> {:.2f} s ({:.2f}x)\n",
              row.cache_wall_s[0], row.cache_wall_s[1], row.cache_wall_s[0] / row.cache_wall_s[1], row.maps_wall_s[0],
              row.maps_wall_s[1], row.maps_wall_s[0] / row.maps_wall_s[1]);
@@ -366,10 +397,13 @@ std::string to_json(const Row& row) {
       "{{\"scene\": \"{}\", \"probes\": {}, \"texels\": {}, \"cache_points\": {}, \"judged_texels\": {}, "
       "\"relative_rms_error\": {:.6g}, \"energy_ratio\": {:.6g}, \"cache_cpu_s\": {:.6g}, \"maps_cpu_s\": {:.6g}, "
       "\"direct_energy_ratio\": {:.6g}, \"direct_mean_error\": {:.6g}, "
+      "\"cached_energy_ratio\": {:.6g}, \"cached_rms_error\": {:.6g}, \"texel_rms_error\": {:.6g}, "
+      "\"paths_rms_noise\": {:.6g}, \"paths_energy_noise\": {:.6g}, "
       "\"rays_per_texel\": {:.6g}, \"paths_per_texel\": {}, \"paths_cpu_s\": {:.6g}, \"paths_rays_per_texel\": {:.6g}, "
       "\"cache_wall_s\": [{:.6g}, {:.6g}], \"maps_wall_s\": [{:.6g}, {:.6g}]}}",
       row.scene, row.probes, row.texels, row.cache_points, row.judged, row.baked_error, row.baked_energy,
-      row.cache_cpu_s, row.maps_cpu_s, row.direct_energy, row.direct_error, row.rays_per_texel, row.paths,
+      row.cache_cpu_s, row.maps_cpu_s, row.direct_energy, row.direct_error, row.cached_energy, row.cached_error, row.texel_error,
+      row.own_noise, row.own_energy, row.rays_per_texel, row.paths,
       row.path_cpu_s, row.path_rays_per_texel, row.cache_wall_s[0], row.cache_wall_s[1], row.maps_wall_s[0],
       row.maps_wall_s[1]);
 }

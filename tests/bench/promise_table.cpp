@@ -57,7 +57,7 @@ class Table {
 
   Measured plan(double target) {
     const BakeState state(folder_ / fmt::format("plan-{}", target), "promise-table");
-    MapStore store(rays_, light_, exposure_.radiance_scale, state);
+    MapStore store(rays_, light_, exposure_.radiance_scale, state, SpaceCells::around(scene_.bounds));
     PlanTarget wanted;
     wanted.error = target;
     const Plan plan = plan_bake(space_, heads_, rays_, light_, exposure_, store, wanted, progress_);
@@ -94,7 +94,7 @@ class Table {
       if (placement.sites.size() == before) continue;
       before = placement.sites.size();
       const BakeState state(folder_ / "grids", "promise-table");
-      MapStore store(rays_, light_, exposure_.radiance_scale, state);
+      MapStore store(rays_, light_, exposure_.radiance_scale, state, SpaceCells::around(scene_.bounds));
       PlannedMaps maps(store, BakeOptions{}.samples);
       std::map<int, double> geometry_s, radiance_s;
       for (const int n : kSides) {

@@ -36,7 +36,7 @@ class BoxScene {
     return *this;
   }
   BoxScene& authored_room(const std::string& id, glm::dvec3 lower, glm::dvec3 upper) {
-    scene.rooms.push_back({id, "Room " + id, lower, upper});
+    scene.rooms.push_back({id, "Room " + id, lower, upper, {}});
     return *this;
   }
 

@@ -72,6 +72,7 @@ struct Layer {
   XrTime first_time = 0;
   XrTime jump_time = 0;
   std::uint64_t answers = 0;
+  int asked = 0;                    // locates outside a frame since the last xrEndFrame
   std::atomic<int> swapchains = 0;  // that the application holds; made on any thread
   std::deque<XrEventDataReferenceSpaceChangePending> events;
 
@@ -105,7 +106,7 @@ void read_settings() {
   }
   if (layer.settings.contains("log")) {
     layer.log.open(layer.settings["log"]);
-    layer.log << "frame,display_time,layers,stalled_ms,late_mm,late_deg,early_mm,early_deg,swapchains,quads\n";
+    layer.log << "frame,display_time,layers,stalled_ms,late_mm,late_deg,early_mm,early_deg,swapchains,quads,asked\n";
   }
 }
 
@@ -204,6 +205,7 @@ XRAPI_ATTR XrResult XRAPI_CALL locate_views(XrSession session, const XrViewLocat
   Frame& frame = layer.frame;
   const bool in_frame = frame.begun && info->displayTime == frame.display_time;
   const int nth = in_frame ? ++frame.locates : 0;
+  layer.asked += in_frame ? 0 : 1;
   if (nth == 1) {
     stall("xrLocateViews", frame);
     if (layer.is_due("time_invalid_every", frame.number)) return XR_ERROR_TIME_INVALID;
@@ -266,7 +268,8 @@ XRAPI_ATTR XrResult XRAPI_CALL end_frame(XrSession session, const XrFrameEndInfo
     for (std::uint32_t i = 0; i < info->layerCount; ++i) {
       quads += info->layers[i]->type == XR_TYPE_COMPOSITION_LAYER_QUAD;
     }
-    layer.log << ',' << layer.swapchains << ',' << quads << std::endl;
+    layer.log << ',' << layer.swapchains << ',' << quads << ',' << layer.asked << std::endl;
+    layer.asked = 0;
   }
   return result;
 }

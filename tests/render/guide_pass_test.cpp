@@ -188,6 +188,42 @@ TEST_F(GuidePassTest, HidesBehindWhatTheLookUpsPictureMet) {
   EXPECT_EQ(differ(hidden[0], lookups[0]), 0u);
 }
 
+// For those who watch: a view of its own beside the frame's, with guides of its own.
+TEST_F(GuidePassTest, AViewBesideTheFrameShowsThemToo) {
+  const auto renderer = make_renderer();
+  const auto views = eyes_at({1.2, 1.6, 1.0}, 1.4, -0.4);
+  TracerOptions tracer;
+  tracer.extent_px = kExtent;
+  tracer.views = 1;
+  SideView side(device, tracer, kFormat);
+  const auto beside = [&](const Guides& guides) {
+    const auto wearer = frame(*renderer, views, {});
+    EXPECT_TRUE(renderer->submit_beside(side, views[1], settings, guides));
+    renderer->wait();
+    const FrameTarget& target = side.target();
+    auto seen = read_pictures(device, target.image, target.final_layout, kFormat, kExtent, 1);
+    seen.push_back(wearer[1]);
+    return seen;
+  };
+  const auto plain = beside({});
+  EXPECT_EQ(plain[0].rgb, plain[1].rgb) << "the same view of the same probes";
+  const glm::dvec3 landing(-1.6, 0.0, 0.6);
+  const auto way = thrown({1.3, 1.2, 0.6}, landing);
+  auto shown = plain;
+  for (int k = 0; k < 1000 && shown[0].rgb == plain[0].rgb; ++k) {
+    shown = beside({.aim = AimGuide{way, landing}});
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  keep("beside", shown[0]);
+  const glm::ivec3 middle = at(shown[0], pixel_of(views[1], landing));
+  EXPECT_GT(middle.y, 2 * middle.x);
+  EXPECT_GT(middle.y, 150);
+  EXPECT_EQ(shown[1].rgb, plain[1].rgb) << "the frame itself has none";
+  EXPECT_EQ(beside({})[0].rgb, plain[0].rgb);
+  // As the wearer's own, to the bit.
+  EXPECT_EQ(draw(*renderer, views, {.aim = AimGuide{way, landing}})[1].rgb, shown[0].rgb);
+}
+
 TEST_F(GuidePassTest, WithoutAnyThePictureIsTheSameToTheBitAndNothingIsKept) {
   const auto views = eyes_at({1.2, 1.6, 1.0}, 1.4, -0.4);
   const auto renderer = make_renderer();

@@ -5,6 +5,7 @@
 
 #include <netinet/in.h>
 #include <sys/socket.h>
+#include <sys/time.h>
 #include <unistd.h>
 
 #include <chrono>
@@ -55,22 +56,38 @@ class RemoteHands {
   RemoteHands(const RemoteHands&) = delete;
   RemoteHands& operator=(const RemoteHands&) = delete;
 
-  // Tries for `patience`; false when nobody answers, or somebody who talks otherwise.
-  bool connect(std::uint16_t port, std::chrono::seconds patience) {
-    sockaddr_in address{};
-    address.sin_family = AF_INET;
-    address.sin_port = htons(port);
-    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  // A port that nobody listens on, below those that a system hands out by itself: to a port of theirs, a connection
+  // that nobody awaits may find its own other end.
+  static std::uint16_t free_port() {
+    for (int tries = 0; tries < 1000; ++tries) {
+      const auto port = static_cast<std::uint16_t>(20000 + (getpid() + 7919 * tries) % 12000);
+      const int probe = ::socket(AF_INET, SOCK_STREAM, 0);
+      const sockaddr_in address = here(port);
+      const bool is_free = bind(probe, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) == 0;
+      close(probe);
+      if (is_free) return port;
+    }
+    return 0;
+  }
+
+  // Tries for `patience`; false when nobody answers in that time, or somebody who talks otherwise.
+  bool connect(std::uint16_t port, std::chrono::milliseconds patience) {
     const auto until = std::chrono::steady_clock::now() + patience;
     do {
       socket_ = ::socket(AF_INET, SOCK_STREAM, 0);
-      if (::connect(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) == 0) break;
+      const timeval answer_within{2, 0};
+      setsockopt(socket_, SOL_SOCKET, SO_RCVTIMEO, &answer_within, sizeof(answer_within));
+      const sockaddr_in address = here(port);
+      // It greets with the resting state and the present one.
+      if (::connect(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) == 0 && read_state() &&
+          read_state()) {
+        return state.head.position_m[1] == 1.6f && state.right.active == 1;
+      }
       close(socket_);
       socket_ = -1;
       std::this_thread::sleep_for(std::chrono::milliseconds(100));
     } while (std::chrono::steady_clock::now() < until);
-    // It greets with the resting state and the present one.
-    return socket_ >= 0 && read_state() && read_state() && state.head.position_m[1] == 1.6f && state.right.active == 1;
+    return false;
   }
 
   // Sends `state`. The service keeps it.
@@ -79,6 +96,13 @@ class RemoteHands {
   RemoteState state{};
 
  private:
+  static sockaddr_in here(std::uint16_t port) {
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_port = htons(port);
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    return address;
+  }
   bool read_state() {
     std::size_t have = 0;
     while (have < sizeof(state)) {

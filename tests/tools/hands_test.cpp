@@ -5,8 +5,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <csignal>
 #include <fstream>
 #include <functional>
+#include <future>
 #include <glm/gtc/quaternion.hpp>
 #include <nlohmann/json.hpp>
 #include <numbers>
@@ -16,6 +18,8 @@
 #include "content/image/image.h"
 #include "support/remote_hands.h"
 #include "support/room_pack.h"
+#include "support/threads_of.h"
+#include "support/x_screen.h"
 #include "tools/run_probewalk.h"
 
 namespace probewalk::test {
@@ -38,7 +42,7 @@ const fs::path& pack() {
 
 std::string walk_in_monado(const std::string& environment, const std::string& options) {
   return fmt::format(
-      "cd '{{}}' && export XDG_CONFIG_HOME=$PWD/config {} && unset DISPLAY WAYLAND_DISPLAY && "
+      "cd '{{}}' && unset DISPLAY WAYLAND_DISPLAY && export XDG_CONFIG_HOME=$PWD/config {} && "
       "bash '{}/tools/lib/with-monado.sh' null bash -c 'echo $$ >pid; exec \"$@\"' - '{}' walk '{}' --display headset "
       "--eye-size 64x48 {} >stdout 2>stderr",
       environment, PROBEWALK_SOURCE_DIR, PROBEWALK_EXECUTABLE, pack().string(), options);
@@ -125,18 +129,17 @@ class Play {
   RemoteHands& hands_;
 };
 
-// A walk whose hands follow `script`, and that ends after it. Each has a port of its own.
+// A walk whose hands follow `script`, and that ends after it.
 std::vector<Step> walk_with_hands(const fs::path& folder, const std::string& options,
-                                  const std::function<void(Play&)>& script) {
-  static int walks = 0;
-  const auto port = static_cast<std::uint16_t>(20000 + (getpid() * 4 + walks++) % 20000);
+                                  const std::function<void(Play&)>& script, const std::string& environment = "") {
+  const std::uint16_t port = RemoteHands::free_port();
   fs::create_directories(folder / "config" / "monado");
   std::ofstream(folder / "config" / "monado" / "config_v0.json")
       << json{{"active", "remote"}, {"remote", {{"version", 0}, {"port", port}, {"view_count", 2}}}};
-  int status = 0;
-  std::thread walk([&] {
-    status = run(folder, walk_in_monado("P_OVERRIDE_ACTIVE_CONFIG=remote PROBEWALK_MONADO_LOG=$PWD/monado.log",
-                                        "--seconds 120 --record walked.jsonl --save-frames pictures " + options));
+  std::future<int> walk = std::async(std::launch::async, [&] {
+    return run(folder,
+               walk_in_monado("P_OVERRIDE_ACTIVE_CONFIG=remote PROBEWALK_MONADO_LOG=$PWD/monado.log " + environment,
+                              "--seconds 120 --record walked.jsonl --save-frames pictures " + options));
   });
   RemoteHands hands;
   const bool connected = hands.connect(port, 20s);
@@ -149,9 +152,15 @@ std::vector<Step> walk_with_hands(const fs::path& folder, const std::string& opt
     await_frames(folder, 5);
     script(play);
   }
-  std::system(fmt::format("kill -INT $(cat '{}/pid')", folder.string()).c_str());
-  walk.join();
-  EXPECT_EQ(WEXITSTATUS(status), 5) << read_text(folder / "stderr") << read_text(folder / "monado.log");
+  pid_t pid = 0;
+  std::ifstream(folder / "pid") >> pid;
+  EXPECT_GT(pid, 0) << read_text(folder / "stderr");
+  if (pid > 0) kill(pid, SIGINT);
+  if (walk.wait_for(60s) != std::future_status::ready) {
+    ADD_FAILURE() << "the walk does not end; its threads:\n" << threads_of(pid);
+    if (pid > 0) kill(pid, SIGKILL);
+  }
+  EXPECT_EQ(WEXITSTATUS(walk.get()), 5) << read_text(folder / "stderr") << read_text(folder / "monado.log");
   return read_walk(folder / "walked.jsonl");
 }
 
@@ -184,6 +193,16 @@ struct Shown {
   int narrowed = 0;  // have black corners around a lit middle
 };
 
+// Pixels of the green of an aim that lands.
+int green_in(const ImageRgb8& picture) {
+  int green = 0;
+  for (std::size_t i = 0; i < picture.rgb.size(); i += 3) {
+    const std::uint8_t* c = &picture.rgb[i];
+    green += std::abs(c[0] - 48) < 28 && std::abs(c[1] - 225) < 16 && std::abs(c[2] - 111) < 28;
+  }
+  return green;
+}
+
 Shown shown_in(const fs::path& pictures) {
   Shown shown;
   for (const auto& entry : fs::directory_iterator(pictures)) {
@@ -192,17 +211,12 @@ Shown shown_in(const fs::path& pictures) {
       return &picture.rgb[3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(picture.width_px) +
                                static_cast<std::size_t>(x))];
     };
-    int green = 0;
-    for (std::size_t i = 0; i < picture.rgb.size(); i += 3) {
-      const std::uint8_t* c = &picture.rgb[i];
-      green += std::abs(c[0] - 48) < 28 && std::abs(c[1] - 225) < 16 && std::abs(c[2] - 111) < 28;
-    }
     const int right = picture.width_px - 1, foot = picture.height_px - 1;
     const auto brightness = [](const std::uint8_t* c) { return c[0] + c[1] + c[2]; };
     const bool narrowed =
         brightness(at(0, 0)) + brightness(at(right, 0)) + brightness(at(0, foot)) + brightness(at(right, foot)) == 0 &&
         brightness(at(right / 2, foot / 2)) > 100;
-    shown.aims += green >= 3;
+    shown.aims += green_in(picture) >= 3;
     shown.narrowed += narrowed;
     ++shown.pictures;
   }
@@ -247,6 +261,45 @@ TEST(Hands, TeleportTurnMoveAndRecentreTheWearer) {
   EXPECT_GE(shown.narrowed, 4) << "both eyes, while the stick moves the wearer";
 }
 
+TEST(Hands, TheSpectatorSeesWhereATeleportLeads) {
+  if (!installed("monado-service") || !installed("Xvfb")) GTEST_SKIP() << "monado-service or Xvfb is not installed";
+  const fs::path folder = fresh_folder("hands-spectator");
+  ASSERT_EQ(run(folder,
+                "cd '{}' && (Xvfb -displayfd 3 -noreset -screen 0 960x540x24 -nolisten tcp 3>display >/dev/null 2>&1 & "
+                "echo $! >screen-pid)"),
+            0);
+  for (int i = 0; i < 100 && read_text(folder / "display").empty(); ++i) std::this_thread::sleep_for(100ms);
+  const int display = std::atoi(read_text(folder / "display").c_str());
+  XScreen screen(std::to_string(display));
+  int before = -1, during = 0, after = -1;
+  walk_with_hands(
+      folder, "--mirror spectator --validate",
+      [&](Play& play) {
+        before = green_in(screen.picture());
+        play.change([](RemoteState& state) {
+          state.right.pose = {{std::sin(-0.2617994f), 0, 0, std::cos(0.2617994f)}, {0.2f, 1.2f, -0.5f}};
+          state.right.trigger = 1.0f;
+        });
+        for (int i = 0; i < 300 && during < 30; ++i) {
+          std::this_thread::sleep_for(100ms);
+          const ImageRgb8 picture = screen.picture();
+          during = green_in(picture);
+          write_png(folder / "spectator.png", picture);
+        }
+        play.change([](RemoteState& state) { state.right.trigger = 0.0f; });
+        for (int i = 0; i < 300 && after != 0; ++i) {
+          std::this_thread::sleep_for(100ms);
+          after = green_in(screen.picture());
+        }
+      },
+      fmt::format("DISPLAY=:{} XDG_SESSION_TYPE=x11", display));
+  run(folder, "kill $(cat '{}/screen-pid')");
+  EXPECT_THAT(read_text(folder / "stderr"), Not(HasSubstr("VUID")));
+  EXPECT_EQ(before, 0);
+  EXPECT_GE(during, 30);
+  EXPECT_EQ(after, 0);
+}
+
 TEST(Hands, HoldingMenuShowsAndHidesTheOverlay) {
   if (!installed("monado-service")) GTEST_SKIP() << "monado-service is not installed";
   const fs::path folder = fresh_folder("hands-overlay");
@@ -266,6 +319,7 @@ TEST(Hands, HoldingMenuShowsAndHidesTheOverlay) {
   std::string line;
   std::vector<std::string> seen;  // swapchains and quads, as they change
   while (std::getline(log, line)) {
+    line.erase(line.rfind(','));  // questions about poses
     const std::string shown = line.substr(line.rfind(',', line.rfind(',') - 1) + 1);
     if (seen.empty() || seen.back() != shown) seen.push_back(shown);
   }
@@ -291,6 +345,21 @@ TEST(Hands, OfAScaledAndSeatedWearerFindEyesAndFloorWhereStated) {
   EXPECT_NEAR(stood[1][0].ipd_m, 2 * stood[0][0].ipd_m, 1e-5);
   EXPECT_NEAR(stood[0][1].position_m.x - stood[0][0].position_m.x, 0.3, 1e-4);
   EXPECT_NEAR(stood[1][1].position_m.x - stood[1][0].position_m.x, 0.6, 1e-4);
+}
+
+// What stands at the port may be anybody: whoever does not greet is given up, and the test goes on to say so.
+TEST(RemoteHands, GiveUpWhoeverDoesNotGreet) {
+  const int listener = ::socket(AF_INET, SOCK_STREAM, 0);
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  socklen_t size = sizeof(address);
+  ASSERT_EQ(bind(listener, reinterpret_cast<const sockaddr*>(&address), size), 0);
+  ASSERT_EQ(listen(listener, 4), 0);
+  ASSERT_EQ(getsockname(listener, reinterpret_cast<sockaddr*>(&address), &size), 0);
+  RemoteHands hands;
+  EXPECT_FALSE(hands.connect(ntohs(address.sin_port), 500ms));
+  close(listener);
 }
 
 }  // namespace

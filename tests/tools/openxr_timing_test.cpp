@@ -25,6 +25,7 @@ struct EndedFrame {
   double stalled_ms = 0.0;
   double late_mm = 0.0, late_deg = 0.0;    // of the pose that the layer's views state
   double early_mm = 0.0, early_deg = 0.0;  // of the frame's first locate
+  int asked = 0;                           // locates outside a frame since the xrEndFrame before
 };
 
 std::vector<EndedFrame> read_layer_log(const fs::path& file) {
@@ -33,9 +34,10 @@ std::vector<EndedFrame> read_layer_log(const fs::path& file) {
   std::getline(in, line);
   std::vector<EndedFrame> frames;
   while (std::getline(in, line)) {
+    EndedFrame frame;
+    frame.asked = std::stoi(line.substr(line.rfind(',') + 1));
     std::replace(line.begin(), line.end(), ',', ' ');
     std::istringstream cells(line);
-    EndedFrame frame;
     std::uint64_t number = 0;
     cells >> number >> frame.display_time >> frame.layers >> frame.stalled_ms >> frame.late_mm >> frame.late_deg >>
         frame.early_mm >> frame.early_deg;
@@ -169,6 +171,39 @@ TEST(OpenXrTiming, EveryShownFrameIsAccountedForWhereAnswersFail) {
   const auto& answers = run.walk.summary["pose_answers"];
   EXPECT_GT(answers["too_late"].get<int>(), 0);
   EXPECT_GT(answers["refused"].get<int>(), 0);
+}
+
+TEST(OpenXrTiming, AFrameIsAskedAboutOnceAndAStallBringsNoHeapOfQuestions) {
+  if (!has_monado()) GTEST_SKIP() << "monado-service is not installed";
+  const LayerWalk run = walk_behind_layer("questions", "stall=xrWaitFrame;stall_ms=60;stall_every=4", "--frames 60");
+  std::size_t asked = 0;
+  for (const EndedFrame& frame : run.ended) {
+    EXPECT_LE(frame.asked, 2);
+    asked += static_cast<std::size_t>(frame.asked);
+  }
+  const std::size_t answered =
+      count(run.walk.frames, PoseAnswer::kMeasured) + count(run.walk.frames, PoseAnswer::kRefused);
+  EXPECT_GT(asked, 5u);  // a busy machine asks too late of many frames, and says so
+  EXPECT_LE(asked, answered);
+  EXPECT_GE(asked + 2, answered) << "those after the last xrEndFrame";
+  std::vector<double> took_ms;
+  for (const FrameRecord& frame : run.walk.frames) took_ms.push_back(ms(frame.ledger.end - frame.ledger.begin));
+  std::printf("  %zu questions about %zu frames; the ledger took %.3f ms after a frame at the median\n", asked,
+              run.walk.frames.size(), median(took_ms));
+}
+
+TEST(OpenXrTiming, NobodyAsksForPosesThatNoReportTellsOf) {
+  if (!has_monado()) GTEST_SKIP() << "monado-service is not installed";
+  const fs::path folder = fresh_folder("openxr-timing-unasked");
+  const MonadoWalk walk =
+      walk_in_monado(folder,
+                     "export XR_ENABLE_API_LAYERS=XR_APILAYER_PROBEWALK_known_motion XR_API_LAYER_PATH='" +
+                         std::string(PROBEWALK_TEST_LAYER_MANIFESTS) + "' PROBEWALK_TEST_LAYER=\"log=$PWD/layer.csv\"",
+                     "--frames 30", Report::kNone);
+  ASSERT_EQ(walk.run.exit_code, 0) << walk.run.err;
+  const std::vector<EndedFrame> ended = read_layer_log(folder / "layer.csv");
+  EXPECT_GE(ended.size(), 30u);
+  for (const EndedFrame& frame : ended) EXPECT_EQ(frame.asked, 0);
 }
 
 TEST(OpenXrTiming, AFrameWithoutALatePoseIsShownWithTheEarlyOneAndSaysSo) {

@@ -1,18 +1,19 @@
 #!/usr/bin/env bash
-# What tools/soak does, on the platform itself. usage: soak.sh PROBEWALK MINUTES KILLS DIR PACK [WALK OPTION…]
+# What tools/soak does, on the platform itself. usage: soak.sh PROBEWALK MINUTES KILLS none|xvfb DIR PACK
+# [WALK OPTION…]
 set -uo pipefail
-probewalk=$1 minutes=$2 kills=$3 out=$4; shift 4
+probewalk=$1 minutes=$2 kills=$3 display=$4 out=$5; shift 5
 lib=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 cd "$out" || exit 125
-rm -rf walk.log monado.log openxr.txt report
+rm -rf walk.log monado.log openxr.txt report display
 fail() { echo "probewalk: $1" >&2; exit 125; }
 layers=/usr/share/openxr/1/api_layers/explicit.d
 ls $layers/*core_validation* >/dev/null 2>&1 || fail "install openxr-layer-corevalidation"
 source "$lib/monado-service.sh"
 export XDG_RUNTIME_DIR=$runtime_dir XR_RUNTIME_JSON=$manifest
-service='' walk=''
+service='' walk='' screen=''
 stop() {
-  for process in $walk $service; do kill "$process" 2>/dev/null; done
+  for process in $walk $service $screen; do kill "$process" 2>/dev/null; done
   rm -rf "$XDG_RUNTIME_DIR"
 }
 trap stop EXIT
@@ -37,7 +38,16 @@ await() {
 }
 
 start_service
-unset DISPLAY WAYLAND_DISPLAY
+unset DISPLAY WAYLAND_DISPLAY XAUTHORITY
+if [ "$display" = xvfb ]; then
+  # It finds a free display and tells its number once it answers. It is not to begin anew when its last window closes:
+  # the next would find nobody.
+  setpriv --pdeathsig TERM Xvfb -displayfd 3 -noreset -screen 0 1600x900x24 -nolisten tcp 3>display >/dev/null 2>&1 </dev/null &
+  screen=$!
+  for _ in $(seq 100); do [ -s display ] && break; sleep 0.1; done
+  [ -s display ] || fail "Xvfb did not start"
+  export DISPLAY=:$(<display)
+fi
 # To its standard output: a file of its own the layer begins anew with each instance.
 XR_ENABLE_API_LAYERS=XR_APILAYER_LUNARG_core_validation XR_CORE_VALIDATION_EXPORT_TYPE=text \
   "$probewalk" walk "$@" --display headset --validate --report report >openxr.txt 2>walk.log &

@@ -29,7 +29,7 @@ case $compositor in
   null) service+=(XRT_COMPOSITOR_NULL=1) ;;
   xvfb)
     # Xvfb finds a free display and tells its number once it answers.
-    setpriv --pdeathsig TERM Xvfb -displayfd 3 -screen 0 1600x900x24 -nolisten tcp 3>"$runtime_dir/display" >/dev/null 2>>"$log" </dev/null &
+    setpriv --pdeathsig TERM Xvfb -displayfd 3 -noreset -screen 0 1600x900x24 -nolisten tcp 3>"$runtime_dir/display" >/dev/null 2>>"$log" </dev/null &
     started+=($!)
     for _ in $(seq 100); do [ -s "$runtime_dir/display" ] && break; sleep 0.1; done
     [ -s "$runtime_dir/display" ] || fail "Xvfb did not start; see $log"

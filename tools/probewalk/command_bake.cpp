@@ -42,6 +42,16 @@ void print_share(const BakeOptions& options, const BakeReport& report, bool as_j
   std::puts(fmt::format("{} in {}; the same command without --share finishes the pack", what, folder).c_str());
 }
 
+// Room by room, what was kept and why.
+void print_kept(const BakeReport& report) {
+  if (report.kept.empty()) return;
+  std::fputs(fmt::format("  {} of {} maps kept from before:\n", report.kept_maps, report.maps).c_str(), stdout);
+  for (const RoomKept& room : report.kept) {
+    const char* what = room.geometry && room.radiance ? "kept" : room.geometry ? "lit anew" : room.radiance ? "light kept" : "baked anew";
+    std::fputs(fmt::format("    {:<20} {:<11} {}\n", room.room, what, room.reason).c_str(), stdout);
+  }
+}
+
 void print_report(const BakeOptions& options, const BakeReport& report, bool as_json) {
   if (as_json) {
     nlohmann::json json = {{"pack", options.pack.string()},
@@ -61,6 +71,13 @@ void print_report(const BakeOptions& options, const BakeReport& report, bool as_
                                  {"samples_bytes_float", report.samples_bytes_float > 0 ? nlohmann::json(report.samples_bytes_float) : nlohmann::json()},
                                  {"worst_sample_error", report.worst_sample_error},
                                  {"planar_fraction", report.planar_fraction}};
+    json["maps"] = report.maps;
+    json["maps_kept"] = report.kept_maps;
+    json["kept"] = nlohmann::json::array();
+    for (const RoomKept& room : report.kept) {
+      json["kept"].push_back({{"room", room.room}, {"geometry", room.geometry}, {"radiance", room.radiance},
+                              {"light_off", room.light_off}, {"reason", room.reason}});
+    }
     if (report.planned) {
       json["plan_file"] = report.plan_file.string();
       json["planned"] = nlohmann::json::parse(plan_json(*report.planned));
@@ -85,6 +102,7 @@ void print_report(const BakeOptions& options, const BakeReport& report, bool as_
                            "planar entries kept\n", report.quantised_levels, static_cast<double>(report.samples_bytes_disk) / kMiB,
                            instead, report.worst_sample_error, 100.0 * report.planar_fraction).c_str(), stdout);
   }
+  print_kept(report);
   if (!report.planned) return;
   std::fputs(plan_table(*report.planned).c_str(), stdout);
   std::fputs(fmt::format("  the plan: {}\n", report.plan_file.string()).c_str(), stdout);
@@ -122,6 +140,11 @@ void add_bake_command(CLI::App& app, CommonOptions& common) {
       "what a display shows at 20 pixels a degree, and the share of rays that are wrong or holes. Both are measured on\n"
       "views that nothing was chosen by. Rooms get probes where they are needed and maps of their own sizes; a table and\n"
       "NAME.plan.json tell what was chosen and what the next coarser choice would have cost, or why E cannot be kept.\n\n"
+      "Onto a pack that was baked with the same options, only what has changed in the scene since is baked. A room is kept\n"
+      "when nothing that its probes or their light's rays pass by has changed, and the light that arrives there by no more\n"
+      "than --light-tolerance; a table tells what was kept and why. What is kept has the bytes of a full bake, unless the\n"
+      "table says that its light changed. Probes stay on the grid of the earlier bake as long as it covers the scene. What\n"
+      "the pack was made of is in NAME.inputs beside it; without that file, or with --all, all is baked.\n\n"
       "  probewalk bake house.glb -o house.probes\n"
       "  probewalk bake house.glb -o house.probes --error 0.05    the smallest pack that is off by no more\n"
       "  probewalk bake house.glb -o house.probes --budget 20     the best pack in 20 MiB\n"
@@ -163,14 +186,20 @@ void add_bake_command(CLI::App& app, CommonOptions& common) {
                       "Bounces of indirect light that are followed; what would come after is extrapolated")
       ->check(CLI::Range(0, 64))->capture_default_str();
   command->add_option("--seed", bake.light.seed, "Turns the sampling patterns of indirect light")->capture_default_str();
-  command->add_option("--rooms", arguments->rooms_file, "Room names and boxes, instead of rooms.json beside the scene; `probewalk info PACK --rooms` prints those "
-                      "that were found, to correct them");
+  command->add_option("--rooms", arguments->rooms_file, "Rooms as boxes and polygons, or edits of those that are found (merge, rename, split), instead of "
+                      "rooms.json beside the scene; `probewalk info PACK --rooms` prints those that were found, and `probewalk "
+                      "info --help` tells the form");
   command->add_option("--scale", arguments->scale, "Metres per unit of the file, instead of the guess that is stated")
       ->check(CLI::PositiveNumber);
   command->add_flag("--recentre", bake.load.recentre, "Move the scene's middle to x = z = 0 and its lowest point to y = 0");
   command->add_option("--start", arguments->start, "Where a walk starts: x,y,z in metres, moved to the nearest floor")
       ->delimiter(',')->expected(3);
   command->add_option("--credits", arguments->credits_file, "Text file of credits, instead of the scene's own");
+  command->add_flag("--all", bake.all, "Bake all rooms anew, whatever an earlier pack of that name has");
+  command->add_option("--light-tolerance", bake.light_tolerance,
+                      "Keep a room of an earlier pack whose light changed by no more than this share of it, all bakes since "
+                      "it was lit together; 0 keeps only what a full bake would make to the bit")
+      ->check(CLI::Range(0.0, 1.0))->capture_default_str();
   command->add_option("--only-room", bake.only_room, "Bake this room of an existing pack anew (`probewalk info` lists rooms)");
   command->add_option("--share", arguments->share,
                       "Part K of N of the work, for several machines over one folder (tools/bake-slurm): 0/N makes the light, "

@@ -3,12 +3,14 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
 #include "content/error.h"
 #include "content/pack/chunk_layout.h"
 #include "content/pack/pack_io.h"
+#include "content/scene/space/room_outline.h"
 #include "content/text.h"
 #include "tools/probewalk/commands.h"
 
@@ -122,20 +124,40 @@ json to_json(const Manifest& manifest) {
           {"bytes_device_float_samples", manifest.bytes_device(DeviceSamples::kFloat)}};
 }
 
-// As a rooms file, whose boxes are in the scene file's own units.
+// A step of about a millimetre that is a round number of the scene file's own units.
+double plan_step_m(double scale) { return scale * std::pow(10.0, std::floor(std::log10(1e-3 / scale) + 1e-9)); }
+
+// As a rooms file, which is in the scene file's own units.
 void print_rooms_file(const InfoOptions& options, const Manifest& manifest) {
   if (manifest.light && manifest.light->recentred) {
     throw BadUsage(fmt::format("--rooms: {} was baked with --recentre, and its rooms are not where the scene's file "
                                "has them; bake without it for a list to edit", options.pack));
   }
+  std::vector<RoomRegion> regions;
+  for (const RoomEntry& room : manifest.rooms) regions.push_back({room.id, room.name, room.bounds, {}});
+  const double scale = manifest.scale;
+  const OutlinedRooms outlined = outline_rooms(manifest.floor, regions, plan_step_m(scale));
   json rooms = json::array();
-  for (const RoomEntry& room : manifest.rooms) {
-    rooms.push_back({{"id", room.id},
-                     {"name", room.name},
-                     {"min", to_json(room.bounds.lower_m / manifest.scale)},
-                     {"max", to_json(room.bounds.upper_m / manifest.scale)}});
+  for (const RoomRegion& room : outlined.rooms) {
+    json entry{{"id", room.id}, {"name", room.name}};
+    entry["min"] = to_json(room.bounds.lower_m / scale);
+    entry["max"] = to_json(room.bounds.upper_m / scale);
+    if (!room.outline.empty()) {
+      json polygons = json::array();
+      for (const PlanLoop& loop : room.outline) {
+        json& polygon = polygons.emplace_back(json::array());
+        for (const glm::dvec2& corner : loop) polygon.push_back({corner.x / scale, corner.y / scale});
+      }
+      const bool is_one = polygons.size() == 1;
+      entry[is_one ? "polygon" : "polygons"] = is_one ? polygons[0] : polygons;
+    }
+    rooms.push_back(std::move(entry));
   }
   fmt::print("{}\n", json{{"rooms", rooms}}.dump(2, ' ', false, json::error_handler_t::replace));
+  if (outlined.strayed > 0) {
+    fmt::print(stderr, "note: {} of {} pieces of floor (storeys over each other in one room) would go to another room\n",
+               outlined.strayed, manifest.floor.nodes.size());
+  }
 }
 
 // ---- text
@@ -241,9 +263,12 @@ void add_info_command(CLI::App& app, CommonOptions& common) {
       "With --verify every byte is read and decoded; the exit code is 1 when a chunk is damaged, and each damaged chunk\n"
       "is named with its room and level. A manifest that cannot be read is exit code 3.\n\n"
       "With --rooms the rooms come out as the file that `bake --rooms` reads (or finds as rooms.json beside the\n"
-      "scene), for corrections: give a room another name, put one box in the place of two, or two in the place of one.\n"
-      "Boxes are in the scene file's own units. Where they overlap the first one wins; what lies in none goes to the\n"
-      "nearest.\n\n"
+      "scene), for corrections: boxes (min, max), and where boxes would not do polygons of [x, z], which then win,\n"
+      "in the scene file's own units. Where rooms overlap the first one wins; what lies in none goes to the nearest.\n"
+      "Or write a file that only tells what to change, with a list \"edits\" of\n"
+      "  {\"merge\": [\"room-1\", \"room-3\"], \"id\": \"hall\", \"name\": \"The hall\"}\n"
+      "  {\"rename\": \"room-2\", \"id\": \"kitchen\"}\n"
+      "  {\"split\": \"room-4\", \"line\": [[x, z], [x, z]], \"id\": \"nook\"}   (right of the line, seen from above)\n\n"
       "  probewalk info house.probes --verify\n"
       "  probewalk info house.probes --rooms > rooms.json");
   auto options = std::make_shared<InfoOptions>();

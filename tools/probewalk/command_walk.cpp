@@ -149,6 +149,7 @@ void run_walk(WalkArguments arguments, const CommonOptions& common) {
     }
     walk_options.display.refresh_hz = arguments.refresh_hz;
   }
+  walk_options.display.asks_for_poses = walk_options.report || common.json;  // nobody else reads of their errors
   walk_options.command = own_command_line();
 
   walk_options.choice = chosen_tracer(arguments.method);
@@ -224,10 +225,11 @@ void add_walk_command(CLI::App& app, CommonOptions& common) {
   const std::map<std::string, ViewLayout> layouts{{"stereo", ViewLayout::kStereo},
                                                   {"quad", ViewLayout::kStereoWithInsets}};
   command
-      ->add_option("--views", walk_options.display.offscreen_layout,
-                   "Offscreen: stereo, or quad, as headsets with foveated insets have them: each eye wide and, in the "
-                   "middle third of that both ways, once more with as many pixels (default: stereo). --save-frames then "
-                   "also writes what an eye is shown, the inset in its place. A headset has views of its own")
+      ->add_option(
+          "--views", walk_options.display.offscreen_layout,
+          "Offscreen: stereo, or quad, as headsets with foveated insets have them: each eye wide and, in the "
+          "middle third of that both ways, once more with as many pixels (default: stereo). --save-frames then "
+          "also writes what an eye is shown, the inset in its place. A headset has views of its own")
       ->transform(CLI::CheckedTransformer(layouts))
       ->option_text("NAME");
   command->add_option("--path", arguments->path, "Replay this path: JSON lines, as --record writes them");
@@ -289,7 +291,7 @@ void add_walk_command(CLI::App& app, CommonOptions& common) {
   add_walking_options(*command, arguments->walking);
   command
       ->add_option("--refresh-rate", arguments->refresh_hz,
-                   "Of the headset, in Hz: one of those that the walk lists at its start (default: as it is)")
+                   "Of the headset, in Hz: one of those that `probewalk --list-headset` names (default: as it is)")
       ->check(CLI::Range(1.0, 1000.0))
       ->option_text("HZ");
   command->add_flag("!--no-wait-ahead", walk_options.display.waits_ahead,

@@ -10,6 +10,7 @@
 #include "content/text.h"
 #include "render/device.h"
 #include "tools/probewalk/commands.h"
+#include "xr/headset_listing.h"
 
 namespace probewalk {
 
@@ -50,6 +51,9 @@ int run(int argc, char** argv) {
   app.set_version_flag("--version", std::string("probewalk ") + PROBEWALK_VERSION);
   bool list_devices = false;
   app.add_flag("--list-devices", list_devices, "List the Vulkan devices and whether they are suitable, then exit");
+  bool wants_headset = false;
+  app.add_flag("--list-headset", wants_headset,
+               "Name the headset that answers, its eyes and its refresh rates (for `walk --refresh-rate`), then exit");
   CommonOptions common;
   add_scene_command(app, common);
   add_bake_command(app, common);
@@ -70,6 +74,10 @@ int run(int argc, char** argv) {
   }
   if (list_devices) {
     print_devices();
+    return 0;
+  }
+  if (wants_headset) {
+    std::fputs(list_headset().c_str(), stdout);
     return 0;
   }
   if (app.get_subcommands().empty()) {
@@ -101,7 +109,8 @@ int main(int argc, char** argv) {
     probewalk::print_error(error);
     return static_cast<int>(error.code());
   } catch (const std::bad_alloc&) {
-    std::fputs("probewalk: out of memory; close other programs or bake with fewer probes or a lower --resolution\n", stderr);
+    std::fputs("probewalk: out of memory; close other programs or bake with fewer probes or a lower --resolution\n",
+               stderr);
     return static_cast<int>(probewalk::ExitCode::kBadInput);
   } catch (const std::exception& error) {
     probewalk::print_error(error);

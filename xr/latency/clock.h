@@ -7,5 +7,7 @@
 namespace probewalk {
 
 std::int64_t now_ns();
+// Processor time that this process has used, all threads together: a software device's, too.
+std::int64_t process_cpu_ns();
 
 }  // namespace probewalk

@@ -34,6 +34,9 @@ struct FrameRecord {
   Interval ledger;
   // Of wait.end .. end.end: time spent blocked on a swapchain image, on the device or for its queue, wherever it falls.
   std::int64_t blocked_ns = 0;
+  // Processor time that the process had used by wait.end, all its threads together: from frame to frame it grows by
+  // what a frame takes, a software device's work included.
+  std::int64_t process_cpu_ns = 0;
   std::uint32_t pipelines_built = 0;
   // Device, on the same axis when clock_calibrated.
   Interval gpu, gpu_trace, gpu_resolve;

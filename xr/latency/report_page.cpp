@@ -17,6 +17,9 @@
 namespace probewalk {
 namespace {
 
+// A frame this many times as long as the median, or one with a missed refresh before it, is worth a cause.
+constexpr double kStandsOut = 1.05;
+
 const std::string kNone = "<span class=\"soft\">–</span>";
 
 std::string value_text(const QuantitySummary& quantity, std::int64_t value) {
@@ -118,6 +121,15 @@ std::string percentile_table(const Summary& summary) {
          "every frame.</p>\n";
 }
 
+// A good run with a bad number: why that is no contradiction.
+std::string margin_note(const Run& run, const Summary& summary) {
+  const auto margin = summary.quantity("deadline_margin").histogram.percentile(0.5);
+  if (!run.ledger.options().has_deadlines || summary.missed > 0 || !margin || *margin >= 0) return {};
+  return "<p class=\"soft\">The deadline margin is negative and yet no refresh was missed: this runtime shows a frame "
+         "sooner after its end than the one period that the convention leaves it. The margin is still good for "
+         "comparisons with other runs on it.</p>\n";
+}
+
 std::string counts_line(const Run& run, const Summary& summary) {
   std::string text = fmt::format("{} frames counted, {} warm-up frames left out, {} discarded, {} not rendered",
                                  summary.frames, summary.warmup_frames, summary.discarded, summary.not_rendered);
@@ -127,6 +139,15 @@ std::string counts_line(const Run& run, const Summary& summary) {
 
 std::string worst_table(const Summary& summary) {
   if (summary.worst.empty()) return "<p class=\"soft\">No frames to rank.</p>\n";
+  const auto median_ns = static_cast<double>(summary.quantity("frame").histogram.percentile(0.5).value_or(0));
+  const auto stands_out = [&](const WorstFrame& frame) {
+    return frame.missed > 0 || static_cast<double>(frame.frame_ns) > kStandsOut * median_ns;
+  };
+  if (std::ranges::none_of(summary.worst, stands_out)) {
+    const WorstFrame& longest = summary.worst.front();
+    return fmt::format("<p>None stands out: the longest, frame {}, took {} ms, within {:.0f} % of the median.</p>\n",
+                       longest.frame_id, in_ms(longest.frame_ns), 100.0 * (kStandsOut - 1.0));
+  }
   std::string html =
       "<div class=\"scroll\"><table><tr><th>frame</th><th>frame ms</th><th>CPU busy ms</th><th>GPU busy ms</th>"
       "<th>missed</th><th class=\"words\">cause</th></tr>\n";
@@ -148,7 +169,8 @@ std::string words_of(const SourceStatistics& source) {
   std::string text = fmt::format("{}: {} chunks, {} more from the cache; {} requests, {} failed", source.address,
                                  source.chunks, source.from_cache, source.requests, source.failed_requests);
   if (source.requests > 0 && source.failed_requests > 0) {
-    text += fmt::format(" ({})", percent(static_cast<double>(source.failed_requests) / static_cast<double>(source.requests)));
+    text += fmt::format(" ({})",
+                        percent(static_cast<double>(source.failed_requests) / static_cast<double>(source.requests)));
   }
   if (source.damaged > 0) text += fmt::format(", {} answers damaged", source.damaged);
   if (!source.last_failure.empty()) text += "; the last failure: " + source.last_failure;
@@ -228,7 +250,8 @@ const std::vector<Fact>& facts() {
          const std::uint64_t bytes = r.info.streaming.device_budget_bytes;
          return bytes > 0 ? in_bytes(bytes) : std::string("none set");
        }},
-      {"web server", [](const Run& r, const Summary&) { return r.info.streaming.source ? words_of(*r.info.streaming.source) : ""; }},
+      {"web server",
+       [](const Run& r, const Summary&) { return r.info.streaming.source ? words_of(*r.info.streaming.source) : ""; }},
   };
   return all;
 }
@@ -241,9 +264,12 @@ std::string facts_table(std::span<const Run> runs, std::span<const Summary> summ
     html += "</tr>\n";
   }
   for (const Fact& fact : facts()) {
+    std::vector<std::string> texts;
+    for (std::size_t i = 0; i < runs.size(); ++i) texts.push_back(fact.text(runs[i], summaries[i]));
+    // What no run had (a web server, another display on the way) is not worth a line.
+    if (std::ranges::all_of(texts, &std::string::empty)) continue;
     fmt::format_to(std::back_inserter(html), "<tr><td class=\"soft\">{}</td>", fact.name);
-    for (std::size_t i = 0; i < runs.size(); ++i) {
-      const std::string text = fact.text(runs[i], summaries[i]);
+    for (const std::string& text : texts) {
       html += "<td class=\"words\">" + (text.empty() ? kNone : html_escaped(text)) + "</td>";
     }
     html += "</tr>\n";
@@ -308,7 +334,7 @@ std::string run_section(const Run& run, const Summary& summary, const ChartScale
   }
   html +=
       "</div>\n<p class=\"soft\">Counts on a logarithmic axis. Dashed: the budget. Red: longer than the axis.</p>\n";
-  html += "<h2>Percentiles</h2>\n" + percentile_table(summary);
+  html += "<h2>Percentiles</h2>\n" + percentile_table(summary) + margin_note(run, summary);
   html += "<h2>The longest frames and their causes</h2>\n" + worst_table(summary);
   html += "<h2>To repeat it</h2>\n<pre>" + html_escaped(run.info.command) + "</pre>\n";
   if (only) {

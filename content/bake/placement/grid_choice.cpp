@@ -198,6 +198,16 @@ std::size_t count_useful(const ProbeGrid& grid, const HeadSpace& heads) {
   return count;
 }
 
+bool still_serves(const ProbeGrid& grid, const HeadSpace& heads, std::size_t max_probes) {
+  // As far as choose_grid leaves heads outside its lines.
+  const glm::dvec3 beyond_m = glm::max(glm::dvec3(1.3), 0.75 * grid.spacing_m);
+  const glm::dvec3 lower = grid.origin_m - beyond_m, upper = vertex_m(grid, grid.dims - 1) + beyond_m;
+  for (const glm::dvec3& eye : heads.eyes()) {
+    if (glm::any(glm::lessThan(eye, lower)) || glm::any(glm::greaterThan(eye, upper))) return false;
+  }
+  return fits(grid, heads, max_probes);
+}
+
 ProbeGrid choose_grid(const RayScene& rays, const HeadSpace& heads, double spacing_m, std::size_t max_probes) {
   double layer_m = std::max(1.0, std::min(kLayer_m, spacing_m));
   for (;;) {

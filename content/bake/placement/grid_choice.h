@@ -22,6 +22,9 @@ bool is_useful(const ProbeGrid& grid, const HeadSpace& heads, glm::ivec3 vertex)
 // `probe` of the result is sized and zero.
 ProbeGrid choose_grid(const RayScene& rays, const HeadSpace& heads, double spacing_m, std::size_t max_probes);
 
+// Whether a grid that was chosen for other heads still does for these.
+bool still_serves(const ProbeGrid& grid, const HeadSpace& heads, std::size_t max_probes);
+
 // The vertices of the cell that serves a head, as the tracer chooses it; outside the grid that at its edge.
 std::array<glm::ivec3, 8> cell_corners(const ProbeGrid& grid, glm::dvec3 head_m);
 

@@ -9,8 +9,8 @@
 #include <set>
 
 #include "content/error.h"
-#include "content/json_limits.h"
 #include "content/scene/gltf/limits.h"
+#include "content/scene/gltf/rooms_file.h"
 #include "content/text.h"
 
 namespace probewalk::gltf {
@@ -19,25 +19,8 @@ namespace {
 using nlohmann::json;
 
 constexpr std::size_t kMaxIdLength = 64;
-constexpr std::size_t kMaxNameLength = 256;
 constexpr std::uint64_t kMaxCreditsBytes = 64 << 10;
 constexpr double kMaxSky_cd_m2 = 1e6;
-
-// `object[key]` as three finite numbers; nullopt when absent. Throws BadInput naming `where` when it is anything else.
-std::optional<glm::dvec3> vector_member(const std::string& where, const json& object, const char* key) {
-  const auto member = object.find(key);
-  if (member == object.end()) return std::nullopt;
-  glm::dvec3 result(0.0);
-  bool valid = member->is_array() && member->size() == 3;
-  for (int c = 0; c < 3 && valid; ++c) {
-    const json& number = (*member)[static_cast<std::size_t>(c)];
-    valid = number.is_number();
-    if (valid) result[c] = number.get<double>();
-    valid = valid && std::abs(result[c]) < kMaxCoordinate;
-  }
-  if (!valid) throw BadInput(fmt::format("{}: '{}' must be three numbers [x, y, z]", where, key));
-  return result;
-}
 
 glm::vec3 sky_color(const std::string& where, const json& sky, const char* key) {
   const glm::dvec3 color = vector_member(where, sky, key).value_or(glm::dvec3(0.0));
@@ -47,14 +30,6 @@ glm::vec3 sky_color(const std::string& where, const json& sky, const char* key) 
     }
   }
   return glm::vec3(color);
-}
-
-bool is_id(const std::string& id) {
-  if (id.empty() || id.size() > kMaxIdLength) return false;
-  for (const char c : id) {
-    if (!((c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '-')) return false;
-  }
-  return true;
 }
 
 // "Living Room" -> "living-room"; numbered when taken. `numbers`: the last one that each id has got.
@@ -80,52 +55,6 @@ std::string unique_id(const std::string& name, const std::set<std::string>& take
   }
 }
 
-void check_box(const std::string& where, const glm::dvec3& lower, const glm::dvec3& upper) {
-  for (int c = 0; c < 3; ++c) {
-    if (!(lower[c] < upper[c])) {
-      throw BadInput(fmt::format("{}: the box is empty, min [{}] must be below max [{}]", where,
-                                 fmt::join(&lower.x, &lower.x + 3, ", "), fmt::join(&upper.x, &upper.x + 3, ", ")));
-    }
-  }
-}
-
-void rooms_from_file(const std::filesystem::path& file, SourceFiles& files, Scene& scene) {
-  const std::string name = file.string();
-  const Bytes bytes = files.read(file, kMaxJsonBytes);
-  json document;
-  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  const std::string beyond = beyond_json_limits(text, {kMaxJsonValues, kMaxJsonValues, kMaxJsonDepth});
-  if (!beyond.empty()) throw BadInput(fmt::format("{}: {}", name, beyond));
-  try {
-    document = json::parse(text);
-  } catch (const json::exception& error) {
-    throw BadInput(fmt::format("{}: damaged JSON ({})", name, error.what()));
-  }
-  const json* rooms = find_array(document, "rooms");
-  if (!rooms) throw BadInput(name + ": no list 'rooms'; expected {\"rooms\": [{\"id\", \"name\", \"min\", \"max\"}]}");
-  if (rooms->size() > kMaxRooms)
-    throw BadInput(fmt::format("{}: {} rooms, more than {}", name, rooms->size(), kMaxRooms));
-  std::set<std::string> taken;
-  for (std::size_t i = 0; i < rooms->size(); ++i) {
-    const json& entry = (*rooms)[i];
-    const std::string where = fmt::format("{}: room {}", name, i);
-    AuthoredRoom room;
-    room.id = string_member(entry, "id");
-    room.name = string_member(entry, "name");
-    if (!is_id(room.id)) throw BadInput(fmt::format("{}: id '{}' is not of [a-z0-9-], 1 to 64 long", where, room.id));
-    if (!taken.insert(room.id).second) throw BadInput(fmt::format("{}: id '{}' is used twice", where, room.id));
-    if (room.name.empty()) room.name = room.id;
-    shorten_text(room.name, kMaxNameLength);
-    const std::optional<glm::dvec3> lower = vector_member(where, entry, "min");
-    const std::optional<glm::dvec3> upper = vector_member(where, entry, "max");
-    if (!lower || !upper) throw BadInput(where + ": needs 'min' and 'max'");
-    check_box(where, *lower, *upper);
-    room.lower_m = *lower;
-    room.upper_m = *upper;
-    scene.rooms.push_back(room);
-  }
-}
-
 void rooms_from_nodes(const Document& document, const std::vector<NodeInstance>& nodes, Scene& scene) {
   const json* list = find_array(document.json, "nodes");
   if (!list) return;
@@ -143,7 +72,7 @@ void rooms_from_nodes(const Document& document, const std::vector<NodeInstance>&
     const std::optional<glm::dvec3> upper = vector_member(where, *extras, "probewalk_room_max");
     if (!lower || !upper) throw BadInput(where + ": needs 'probewalk_room_min' and 'probewalk_room_max'");
     check_box(where, *lower, *upper);
-    AuthoredRoom room{unique_id(name, taken, numbers), name, glm::dvec3(1e300), glm::dvec3(-1e300)};
+    AuthoredRoom room{unique_id(name, taken, numbers), name, glm::dvec3(1e300), glm::dvec3(-1e300), {}};
     for (int corner = 0; corner < 8; ++corner) {
       const glm::dvec3 local(corner & 1 ? upper->x : lower->x, corner & 2 ? upper->y : lower->y,
                              corner & 4 ? upper->z : lower->z);
@@ -180,9 +109,9 @@ void import_rooms(const Document& document, const std::vector<NodeInstance>& nod
                   SourceFiles& files, Scene& scene) {
   const std::filesystem::path beside = files.scene_file().parent_path() / "rooms.json";
   if (options.rooms_file) {
-    rooms_from_file(*options.rooms_file, files, scene);
+    read_rooms_file(*options.rooms_file, files, scene);
   } else if (std::filesystem::exists(beside)) {
-    rooms_from_file(beside, files, scene);
+    read_rooms_file(beside, files, scene);
   } else {
     rooms_from_nodes(document, nodes, scene);
   }

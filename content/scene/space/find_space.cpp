@@ -10,6 +10,7 @@
 #include "content/scene/space/floor_graph.h"
 #include "content/scene/space/head_map.h"
 #include "content/scene/space/parts.h"
+#include "content/scene/space/room_edits.h"
 #include "content/scene/space/room_search.h"
 #include "content/scene/space/rooms_assignment.h"
 #include "content/scene/space/start_and_tour.h"
@@ -115,7 +116,7 @@ HeadMap head_map_of(const Floors& floors, const std::vector<FloorPart>& parts, c
 std::vector<RoomRegion> name_rooms(std::int32_t count) {
   std::vector<RoomRegion> rooms;
   for (std::int32_t r = 1; r <= count; ++r)
-    rooms.push_back({fmt::format("room-{}", r), fmt::format("Room {}", r), Bounds{}});
+    rooms.push_back({fmt::format("room-{}", r), fmt::format("Room {}", r), Bounds{}, {}});
   return rooms;
 }
 
@@ -181,6 +182,7 @@ Space find_space(const Scene& scene, const RayScene& rays, const SpaceOptions& o
       found.room.push_back(room_at(space.rooms, heads.graph.foot_m(std::int32_t(i))));
     }
   }
+  edit_rooms(scene.room_edits, heads.graph, space.rooms, found.room);
   std::vector<std::int32_t> room(graph.places.size(), -1);
   for (std::size_t i = 0; i < heads.floor_place.size(); ++i) {
     if (heads.floor_place[i] >= 0) room[heads.floor_place[i]] = found.room[i];

@@ -6,6 +6,8 @@
 #include <numeric>
 #include <utility>
 
+#include "content/scene/space/room_outline.h"
+
 namespace probewalk {
 namespace {
 
@@ -92,9 +94,9 @@ std::vector<glm::dvec3> rectangle(const FloorGraph& graph, const std::vector<Bor
 std::vector<RoomRegion> list_rooms(const Scene& scene) {
   std::vector<RoomRegion> rooms;
   for (const AuthoredRoom& room : scene.rooms) {
-    rooms.push_back({room.id, room.name, Bounds{room.lower_m, room.upper_m}});
+    rooms.push_back({room.id, room.name, Bounds{room.lower_m, room.upper_m}, room.outline});
   }
-  if (rooms.empty()) rooms.push_back({"room", scene.name.empty() ? "Room" : scene.name, Bounds{}});
+  if (rooms.empty()) rooms.push_back({"room", scene.name.empty() ? "Room" : scene.name, Bounds{}, {}});
   return rooms;
 }
 
@@ -105,7 +107,11 @@ int room_at(const std::vector<RoomRegion>& rooms, glm::dvec3 foot_m) {
   for (std::size_t r = 0; r < rooms.size(); ++r) {
     const Bounds& box = rooms[r].bounds;
     const glm::dvec3 outside = glm::max(glm::max(box.lower_m - air_m, air_m - box.upper_m), glm::dvec3(0.0));
-    const double distance = glm::length(outside);
+    double distance = glm::length(outside);
+    if (const glm::dvec2 plan_m(air_m.x, air_m.z); !rooms[r].outline.empty()) {
+      distance = outline_holds(rooms[r].outline, plan_m) ? outside.y
+                                                         : std::hypot(distance_to_outline_m(rooms[r].outline, plan_m), outside.y);
+    }
     if (distance < least) {
       least = distance;
       nearest = int(r);

@@ -197,6 +197,26 @@ TEST(Authored, ARoomsFileWins) {
   EXPECT_NE(scene.content_hash, small.load().content_hash) << "the rooms file is part of what was read";
 }
 
+TEST(Authored, RoomsFilesHavePolygonsAndEditsInFileUnits) {
+  SceneLoadOptions options;
+  options.scale = 0.5;
+  options.rooms_file = GltfScene::write("polygons.json", R"({"rooms":[
+      {"id":"l","floor":0,"ceiling":5,"polygon":[[0,0],[4,0],[4,2],[2,2],[2,4],[0,4]]},
+      {"id":"ring","floor":0,"ceiling":5,"polygons":[[[0,0],[8,0],[8,8],[0,8]],[[2,2],[6,2],[6,6],[2,6]]]}],
+      "edits":[{"merge":["l","ring"],"id":"all"},{"split":"all","line":[[2,0],[2,8]],"name":"Half"}]})");
+  const Scene scene = GltfScene::floor().load(options);
+  ASSERT_EQ(scene.rooms.size(), 2u);
+  EXPECT_EQ(scene.rooms[0].lower_m, glm::dvec3(0, 0, 0));
+  EXPECT_EQ(scene.rooms[0].upper_m, glm::dvec3(2, 2.5, 2));
+  ASSERT_EQ(scene.rooms[0].outline.size(), 1u);
+  EXPECT_EQ(scene.rooms[0].outline[0][2], glm::dvec2(2, 1));
+  EXPECT_EQ(scene.rooms[1].outline.size(), 2u);
+  ASSERT_EQ(scene.room_edits.size(), 2u);
+  EXPECT_EQ(scene.room_edits[0].rooms, (std::vector<std::string>{"l", "ring"}));
+  EXPECT_EQ(scene.room_edits[1].to_m, glm::dvec2(1, 4));
+  EXPECT_EQ(scene.room_edits[1].name, "Half");
+}
+
 TEST(Authored, RefusesRoomsThatCannotBe) {
   const std::string deep = R"({"rooms":)" + std::string(100000, '[');
   const char* const cases[] = {
@@ -205,7 +225,15 @@ TEST(Authored, RefusesRoomsThatCannotBe) {
       R"({"rooms":[{"id":"a","min":[0,0,0],"max":[1,1,0]}]})",
       R"({"rooms":[{"id":"a","min":[0,0],"max":[1,1,1]}]})",
       R"({"rooms":[{"id":"a","min":[0,0,0]}]})",
-      R"({"rooms":[{"id":"a","min":[0,0,0],"max":[1,1,1]},{"id":"a","min":[0,0,0],"max":[1,1,1]}]})"};
+      R"({"rooms":[{"id":"a","min":[0,0,0],"max":[1,1,1]},{"id":"a","min":[0,0,0],"max":[1,1,1]}]})",
+      R"({"rooms":[{"id":"a","polygon":[[0,0],[1,0],[1,1]]}]})",
+      R"({"rooms":[{"id":"a","floor":0,"ceiling":2,"polygon":[[0,0],[1,0]]}]})",
+      R"({"rooms":[{"id":"a","floor":0,"ceiling":2,"polygon":[[0,0],[1,0],[1,1e300]]}]})",
+      R"({"rooms":[{"id":"a","floor":2,"ceiling":0,"polygon":[[0,0],[1,0],[1,1]]}]})",
+      R"({"rooms":[{"id":"a","floor":0,"ceiling":2,"polygons":[[0,0],[1,0],[1,1]]}]})",
+      R"({"edits":[{"merge":["a"]}]})", R"({"edits":[{"merge":"a"}]})", R"({"edits":[{"rename":"a"}]})", R"({"edits":[1]})",
+      R"({"edits":[{"rename":"a","split":"a","id":"b"}]})", R"({"edits":[{"split":"a"}]})",
+      R"({"edits":[{"split":"a","line":[[0,0],[0,0]]}]})", R"({"edits":[{"rename":"a","id":"../x"}]})"};
   for (const char* text : cases) {
     SceneLoadOptions options;
     options.rooms_file = GltfScene::write("bad-rooms.json", text);

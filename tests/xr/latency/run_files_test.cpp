@@ -66,8 +66,8 @@ RunInfo some_info() {
 
 class RunFiles : public testing::Test {
  protected:
-  std::filesystem::path directory_ = std::filesystem::path(PROBEWALK_TEST_OUTPUT_DIR) /
-                                     testing::UnitTest::GetInstance()->current_test_info()->name();
+  std::filesystem::path directory_ =
+      std::filesystem::path(PROBEWALK_TEST_OUTPUT_DIR) / testing::UnitTest::GetInstance()->current_test_info()->name();
   void SetUp() override { std::filesystem::remove_all(directory_); }
 
   std::string read(const char* name) const {
@@ -82,10 +82,17 @@ class RunFiles : public testing::Test {
 
 TEST_F(RunFiles, SummaryHasEveryKeyOfTheContract) {
   const json summary = json::parse(summary_json(eventful_run(), some_info()));
-  for (const char* key :
-       {"schema", "command", "machine", "device", "runtime", "display", "eye_width", "eye_height", "views", "method",
-        "period_ns", "frames", "warmup_frames", "missed", "discarded", "not_rendered", "stale_run_max",
-        "within_budget_fraction", "clock_error_ns", "instrumentation_cost_fraction", "percentiles", "streaming"}) {
+  for (const char* key : {"schema",         "command",
+                          "machine",        "device",
+                          "runtime",        "display",
+                          "eye_width",      "eye_height",
+                          "views",          "method",
+                          "period_ns",      "frames",
+                          "warmup_frames",  "missed",
+                          "discarded",      "not_rendered",
+                          "stale_run_max",  "within_budget_fraction",
+                          "clock_error_ns", "instrumentation_cost_fraction",
+                          "percentiles",    "streaming"}) {
     EXPECT_TRUE(summary.contains(key)) << key;
   }
   for (const char* quantity : {"frame", "cpu_busy", "cpu_wait", "gpu_busy", "gpu_trace", "prediction_horizon",
@@ -137,6 +144,20 @@ TEST_F(RunFiles, ARunReadBackSaysTheSame) {
   EXPECT_EQ(frames_csv(run.ledger), frames_csv(ledger));
   EXPECT_EQ(summary_json(run.ledger, run.info), read("summary.json"));
   EXPECT_EQ(run.ledger.frames()[33].record.begin, ledger.frames()[33].record.begin);
+}
+
+TEST_F(RunFiles, ATableWithoutTheProcessorTimeOfLaterVersionsIsRead) {
+  Ledger ledger;
+  for (std::size_t i = 0; i < 10; ++i) ledger.add(synthetic_frame(i));
+  const std::string name = "process_cpu_ns";
+  std::string csv = frames_csv(ledger);
+  EXPECT_EQ(parse_frames_csv(csv, "now")[3].process_cpu_ns, 18 * kMs);
+  // A column of another name is one that this version does not know.
+  csv.replace(csv.find(name), name.size(), "something_else");
+  const auto frames = parse_frames_csv(csv, "then");
+  ASSERT_EQ(frames.size(), 10u);
+  EXPECT_EQ(frames[3].process_cpu_ns, 0);
+  EXPECT_EQ(frames[3].submit.end, ledger.frames()[3].submit.end);
 }
 
 TEST_F(RunFiles, DamagedRunsAreRefusedByFileAndPlace) {

@@ -29,6 +29,7 @@ inline FrameRecord synthetic_frame(std::uint64_t i) {
   f.end = take(kMs);
   f.ledger = take(kMs / 10);
   f.blocked_ns = kMs;
+  f.process_cpu_ns = static_cast<std::int64_t>(i) * 6 * kMs;
   f.gpu = {start + 3 * kMs, start + 7 * kMs};
   f.gpu_trace = {start + 3 * kMs, start + 6 * kMs};
   f.gpu_resolve = {start + 6 * kMs, start + 7 * kMs};
