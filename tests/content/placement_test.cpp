@@ -160,7 +160,8 @@ TEST(Placement, RefusesSpacingsThatCannotBe) {
   EXPECT_THROW(place(boxes.scene, options), BadUsage);
   options.spacing_m = std::nan("");
   EXPECT_THROW(place(boxes.scene, options), BadUsage);
-  options = {.spacing_m = 0.0, .max_probes = 0};
+  options.spacing_m = 0.0;
+  options.max_probes = 0;
   EXPECT_THROW(place(boxes.scene, options), BadUsage);
 }
 
