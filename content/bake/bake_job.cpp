@@ -515,8 +515,8 @@ class BakeJob {
       ProbeMap probe;
       probe.geometry = maps.geometry(position, size.geometry, &inputs.geometry);
       probe.radiance = with_radiance.empty() ? bake_radiance_of(maps, room_index, k, size) : with_radiance[k].radiance;
-      const std::size_t cut = count_cut_cells(probe.geometry);
-      inputs.cut_cells += cut;
+      const CutCells cut = count_cut_cells(probe.geometry);
+      inputs.cut_cells += cut.all;
       inputs.cells += std::uint64_t(size.geometry) * size.geometry;
       inputs.sees_sky |= std::find(probe.geometry.w.begin(), probe.geometry.w.end(), 0.0f) != probe.geometry.w.end();
       entry.bytes_device += device_probe_bytes(size.geometry, size.radiance, cut);

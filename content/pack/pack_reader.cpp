@@ -27,7 +27,7 @@ void check_size(const ChunkHeader& header, const RoomEntry& room, const LevelEnt
   require(counts.probes == room.probe_count, "number of probes");
   require(counts.geometry_n == level.geometry_size && counts.radiance_r == level.radiance_size, "map sizes");
   const std::uint64_t without_cuts =
-      device_probe_bytes(static_cast<int>(counts.geometry_n), static_cast<int>(counts.radiance_r), 0);
+      device_probe_bytes(static_cast<int>(counts.geometry_n), static_cast<int>(counts.radiance_r));
   require(level.bytes_device / counts.probes >= without_cuts, "bytes on the device");
   require(has_quantised_samples(header) == level.quantised, "kinds of samples");
 }

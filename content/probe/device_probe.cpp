@@ -156,10 +156,15 @@ void split_position(glm::dvec3 position_m, glm::vec3& hi_m, glm::vec3& lo_m) {
   lo_m = glm::vec3(position_m - glm::dvec3(hi_m));
 }
 
-std::size_t count_cut_cells(const ProbeGeometry& geometry) {
-  std::size_t count = 0;
+CutCells count_cut_cells(const ProbeGeometry& geometry) {
+  CutCells count;
   for (int j = 0; j < geometry.n; ++j) {
-    for (int i = 0; i < geometry.n; ++i) count += has_cut(edges_of(Cell(geometry, i, j)));
+    for (int i = 0; i < geometry.n; ++i) {
+      const Cell cell(geometry, i, j);
+      if (!has_cut(edges_of(cell))) continue;
+      ++count.all;
+      count.on_fold += cell.is_on_fold();
+    }
   }
   return count;
 }
@@ -173,17 +178,17 @@ std::size_t count_planar_entries(const DeviceProbe& probe) {
   return count;
 }
 
-std::uint64_t device_probe_bytes(int n, int r, std::size_t cut_cells) {
+std::uint64_t device_probe_bytes(int n, int r, CutCells cut) {
   const std::uint64_t n2 = static_cast<std::uint64_t>(n) * n;
   const std::uint64_t vertices = static_cast<std::uint64_t>(f32::pyramid_begin(n, false));
   const auto pyramid = static_cast<std::uint64_t>(f32::pyramid_words(log2_of(n)));
   const std::uint64_t radiance = mip_chain_texels(r) + static_cast<std::uint64_t>(r) * r / 2;
-  const std::uint64_t on_fold = std::min<std::uint64_t>(cut_cells, 2 * static_cast<std::uint64_t>(n));
-  return 4 * (vertices + pyramid + n2 / 16 + kCutRecordWords * cut_cells + kFoldRecordWords * on_fold + radiance);
+  const std::uint64_t cuts = kCutRecordWords * cut.all + kFoldRecordWords * cut.on_fold;
+  return 4 * (vertices + pyramid + n2 / 16 + cuts + radiance);
 }
 
 std::uint64_t least_device_probe_bytes(int n, int r) {
-  const std::uint64_t most = device_probe_bytes(n, r, 0);
+  const std::uint64_t most = device_probe_bytes(n, r);
   if (n < kLeastTiledSide) return most;
   return most - 4 * static_cast<std::uint64_t>(f32::pyramid_begin(n, false) - f32::pyramid_begin(n, true));
 }

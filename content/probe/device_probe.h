@@ -41,9 +41,13 @@ WordRange pyramid_range(const ProbeRecord& record);
 // The words must outlive the record's use.
 ProbeRecord record_in_memory(const DeviceProbe& probe);
 
-// Bytes of the words of a probe of n cells and r texels a side, at most: with samples as floats, and which of the cut
-// cells lie on the fold, and take a little more, is not asked for.
-std::uint64_t device_probe_bytes(int n, int r, std::size_t cut_cells);
+struct CutCells {
+  std::size_t all = 0;
+  std::size_t on_fold = 0;  // of them: at most 2 n, and they take a little more
+};
+CutCells count_cut_cells(const ProbeGeometry& geometry);
+// Bytes of the words of a probe of n cells and r texels a side, with samples as floats: the most that it takes.
+std::uint64_t device_probe_bytes(int n, int r, CutCells cut = {});
 // The least that a probe without cuts takes with samples in tiles.
 std::uint64_t least_device_probe_bytes(int n, int r);
 // Bytes that a probe's two blocks take on the device, where each begins at a multiple of kDeviceBlockAlignment.
@@ -54,7 +58,6 @@ std::uint64_t device_bytes(const DeviceProbe& probe);
 inline constexpr std::uint64_t kMostPadding_bytes = 2 * (kDeviceBlockAlignment - sizeof(std::uint32_t));
 // Entries of the pyramid that stand for one plane of many cells: what makes walls cheap.
 std::size_t count_planar_entries(const DeviceProbe& probe);
-std::size_t count_cut_cells(const ProbeGeometry& geometry);
 
 // Position as float plus what rounding left.
 void split_position(glm::dvec3 position_m, glm::vec3& hi_m, glm::vec3& lo_m);

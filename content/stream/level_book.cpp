@@ -31,9 +31,9 @@ bool has_errors(const RoomEntry& room) {
 std::uint64_t planned_bytes(const RoomEntry& room, const LevelEntry& level, DeviceSamples samples) {
   const bool tiled = samples == DeviceSamples::kTiled;
   const int n = static_cast<int>(level.geometry_size), r = static_cast<int>(level.radiance_size);
-  const std::uint64_t cells = std::uint64_t{level.geometry_size} * level.geometry_size;
-  const std::uint64_t least = room.probe_count * (tiled ? least_device_probe_bytes(n, r) : device_probe_bytes(n, r, 0));
-  const std::uint64_t most = room.probe_count * device_probe_bytes(n, r, cells);
+  const std::size_t side = level.geometry_size;
+  const std::uint64_t least = room.probe_count * (tiled ? least_device_probe_bytes(n, r) : device_probe_bytes(n, r));
+  const std::uint64_t most = room.probe_count * device_probe_bytes(n, r, {side * side, 2 * side});
   return std::clamp(level.stated_bytes(samples), least, most) + room.probe_count * kMostPadding_bytes;
 }
 

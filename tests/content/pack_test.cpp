@@ -193,7 +193,7 @@ TEST(Pack, ALevelThatIsLargerThanItsManifestSaysIsRefusedBeforeItIsDecompressed)
   Manifest smaller = m;
   smaller.rooms[0].levels[1].radiance_size = 8;
   EXPECT_THAT(refused(smaller), HasSubstr("map sizes differ"));
-  m.rooms[0].levels[1].bytes_device = 2 * device_probe_bytes(16, 16, 0) - 1;
+  m.rooms[0].levels[1].bytes_device = 2 * device_probe_bytes(16, 16) - 1;
   EXPECT_THAT(refused(m), HasSubstr("bytes on the device differ"));
 }
 

@@ -299,7 +299,7 @@ TEST(Residency, ABadChunkKeepsTheCoarserLevel) {
 TEST(Residency, WhatThePackStatesIsKeptWithinWhatItsMapsCanTake) {
   Manifest m = row_of_rooms(1);
   LevelEntry& level = m.rooms[0].levels[0];
-  const std::uint64_t least = device_probe_bytes(8, 8, 0), most = device_probe_bytes(8, 8, 64);
+  const std::uint64_t least = device_probe_bytes(8, 8), most = device_probe_bytes(8, 8, {64, 16});
   EXPECT_EQ(planned_bytes(m.rooms[0], level), kCoarse);
   level.bytes_device = 0;
   EXPECT_EQ(planned_bytes(m.rooms[0], level), least + kMostPadding_bytes);
@@ -314,7 +314,7 @@ TEST(Residency, PlansWithWhatTiledSamplesTake) {
   Manifest m = row_of_rooms(1);
   LevelEntry& level = m.rooms[0].levels[0];
   level.geometry_size = level.radiance_size = 256;
-  level.bytes_device = device_probe_bytes(256, 256, 5000);
+  level.bytes_device = device_probe_bytes(256, 256, {5000, 0});
   level.bytes_tiled = least_device_probe_bytes(256, 256) + 100'000;
   const std::uint64_t padding = m.rooms[0].probe_count * kMostPadding_bytes;
   EXPECT_EQ(planned_bytes(m.rooms[0], level, kFloat), level.bytes_device + padding);

@@ -416,7 +416,7 @@ TEST(RoomStreamer, APackThatStatesTooLittleStaysWithinTheBudgetAndIsSaidSo) {
   const TemporaryFolder folder("streamer-lying");
   Manifest m = write_small_pack(folder.path(), 6);
   const std::uint64_t fine = planned_bytes(m.rooms[0], m.rooms[0].levels[1]);
-  const std::uint64_t stated = m.rooms[0].probe_count * device_probe_bytes(16, 16, 0);
+  const std::uint64_t stated = m.rooms[0].probe_count * device_probe_bytes(16, 16);
   std::uint64_t coarse = 0;
   for (RoomEntry& room : m.rooms) {
     coarse += planned_bytes(room, room.levels[0]);

@@ -89,7 +89,7 @@ std::string walk_with(const fs::path& folder, const std::string& options, const 
         return stands;
       })) << "no picture that stands still";
       user(*screen);
-      screen->hold(kKeyEscape, 100ms);
+      screen->key(kKeyEscape, true);  // and no more: the screen ends with the walk
     } catch (const std::exception& error) {
       ADD_FAILURE() << error.what();
     }
