@@ -86,9 +86,9 @@ TEST(ScarceMemory, WhereABlockIsTooMuchALevelMayFit) {
 }
 
 TEST(ScarceMemory, ALevelThatFindsNoneIsAskedForAgain) {
-  const ScarceWalk walk = walk_with("again", from_rooms_on() + "refuse=25", "--realtime --seconds 4");
+  const ScarceWalk walk = walk_with("again", from_rooms_on() + "refuse=42", "--realtime --seconds 8");
   ASSERT_EQ(walk.run.exit_code, 0) << walk.run.err;
-  EXPECT_EQ(walk.refused(), 25);
+  EXPECT_EQ(walk.refused(), 42);
   EXPECT_THAT(walk.run.err, HasSubstr("VK_ERROR_OUT_OF_DEVICE_MEMORY"));
   EXPECT_THAT(walk.run.err, HasSubstr("loaded after all"));
   EXPECT_FALSE(walk.summary["streaming"]["troubles"].empty());
