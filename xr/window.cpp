@@ -42,6 +42,29 @@ Window::Window(const std::string& title, VkExtent2D size) {
   // A key that was pressed and let go between two polls counts all the same: frames may be slow.
   glfwSetInputMode(window_, GLFW_STICKY_KEYS, GLFW_TRUE);
   glfwSetInputMode(window_, GLFW_STICKY_MOUSE_BUTTONS, GLFW_TRUE);
+  // Keys that switch something are counted as they come. Asked for once a frame, a key that was let go and pressed again
+  // in between would seem never to have been let go.
+  glfwSetWindowUserPointer(window_, &presses_);
+  glfwSetKeyCallback(window_, [](GLFWwindow* window, int key, int, int action, int) {
+    if (action != GLFW_PRESS) return;
+    auto& presses = *static_cast<KeyPresses*>(glfwGetWindowUserPointer(window));
+    switch (key) {
+      case GLFW_KEY_R:
+        ++presses.recentre;
+        break;
+      case GLFW_KEY_F1:
+        ++presses.overlay;
+        break;
+      case GLFW_KEY_F2:
+        ++presses.lookups;
+        break;
+      case GLFW_KEY_F12:
+        ++presses.screenshot;
+        break;
+      default:
+        break;
+    }
+  });
   glfwGetCursorPos(window_, &cursor_px_.x, &cursor_px_.y);
 }
 
@@ -77,14 +100,11 @@ WindowInput Window::poll() {
   input.run = down(GLFW_KEY_LEFT_SHIFT) || down(GLFW_KEY_RIGHT_SHIFT);
   input.turn = static_cast<double>(down(GLFW_KEY_E) || down(GLFW_KEY_RIGHT)) -
                static_cast<double>(down(GLFW_KEY_Q) || down(GLFW_KEY_LEFT));
-  const auto pressed = [&](int key, bool& was_down) {
-    const bool is_down = down(key);
-    return !std::exchange(was_down, is_down) && is_down;
-  };
-  input.recentre = pressed(GLFW_KEY_R, recentre_was_down_);
-  input.overlay = pressed(GLFW_KEY_F1, overlay_was_down_);
-  input.lookups = pressed(GLFW_KEY_F2, lookups_was_down_);
-  input.screenshot = pressed(GLFW_KEY_F12, screenshot_was_down_);
+  const KeyPresses presses = std::exchange(presses_, {});
+  input.recentre = presses.recentre > 0;
+  input.overlay = presses.overlay % 2 == 1;
+  input.lookups = presses.lookups % 2 == 1;
+  input.screenshot = presses.screenshot > 0;
   input.closed = down(GLFW_KEY_ESCAPE) || glfwWindowShouldClose(window_) == GLFW_TRUE;
 
   glm::dvec2 cursor_px;

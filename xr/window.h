@@ -21,8 +21,8 @@ struct WindowInput {
   // The button is held, and has not been dragged: place in the window, (0, 0) top left to (1, 1).
   std::optional<glm::dvec2> press;
   bool click = false;       // it was let go there
-  bool overlay = false;     // F1
-  bool lookups = false;     // F2
+  bool overlay = false;     // F1, an odd number of times: what it switches is switched
+  bool lookups = false;     // F2, likewise
   bool screenshot = false;  // F12
   bool closed = false;      // Esc, or the window's own button
 };
@@ -50,14 +50,16 @@ class Window {
     Library();
     ~Library();
   };
+  struct KeyPresses {  // since the last poll
+    int recentre = 0, overlay = 0, lookups = 0, screenshot = 0;
+  };
 
   Library library_;
   GLFWwindow* window_ = nullptr;
   glm::dvec2 cursor_px_{0.0};
   double dragged_px_ = 0.0;  // since the button went down
   bool button_was_down_ = false;
-  bool overlay_was_down_ = false, lookups_was_down_ = false, screenshot_was_down_ = false;
-  bool recentre_was_down_ = false;
+  KeyPresses presses_;
 };
 
 }  // namespace probewalk
