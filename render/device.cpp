@@ -311,8 +311,12 @@ VkResult Device::present(const VkPresentInfoKHR& info) const {
   return vkQueuePresentKHR(impl_->mirror_queue, &info);
 }
 
-void Device::wait_idle() const { check(impl_->wait_idle(), "vkDeviceWaitIdle"); }
+void Device::wait_idle() const {
+  check(impl_->wait_idle(), "vkDeviceWaitIdle");
+}
 
-void Device::wait_idle_or_lost() const noexcept { impl_->wait_idle(); }
+void Device::wait_idle_or_lost() const noexcept {
+  impl_->wait_idle();
+}
 
 }  // namespace probewalk

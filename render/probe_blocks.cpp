@@ -53,7 +53,8 @@ ProbeBlocks::ProbeBlocks(const Device& device, ProbeArena& arena, const std::vec
     const WordRange gap = probe.pyramid_is_open ? pyramid_range(probe.record) : WordRange{};
     const VkDeviceAddress geometry = place(device, arena, probe.geometry, gap, stage);
     addresses_.push_back({geometry, place(device, arena, probe.radiance, {}, stage)});
-    if (probe.pyramid_is_open) open_pyramids_.push_back({geometry, probe.record.n_log2, (probe.record.flags & kFlagTiledSamples) != 0});
+    if (probe.pyramid_is_open)
+      open_pyramids_.push_back({geometry, probe.record.n_log2, (probe.record.flags & kFlagTiledSamples) != 0});
   }
 }
 

@@ -41,10 +41,11 @@ std::uint64_t PyramidBuilder::record(VkCommandBuffer commands, PyramidJob& job, 
                                     std::min((words - job.word_ + per_group - 1) / per_group, kMostGroups)));
       if (!std::exchange(is_level_below_seen, true)) make_visible_between_shaders(commands);
       const Pipeline& pipeline = job.level_ == 1 ? cells_ : nodes_;
-      pipeline.bind(commands, nullptr,
-                    {site.geometry,
-                     static_cast<std::uint32_t>(job.level_) | site.n_log2 << 8 | (site.has_tiled_samples ? 1u << 16 : 0u),
-                     job.word_});
+      pipeline.bind(
+          commands, nullptr,
+          {site.geometry,
+           static_cast<std::uint32_t>(job.level_) | site.n_log2 << 8 | (site.has_tiled_samples ? 1u << 16 : 0u),
+           job.word_});
       vkCmdDispatch(commands, groups, 1, 1);
       const std::uint32_t made = std::min(groups * per_group, words - job.word_);
       read_bytes += made * word_bytes;

@@ -28,7 +28,8 @@ double usable_share(const Manifest& manifest, std::uint64_t budget_bytes, Device
     }
   }
   const double share = ProbeArena::usable_share(budget_bytes, largest_probe);
-  const double least = static_cast<double>(minimum_budget(manifest, {.samples = samples}) + 1) / static_cast<double>(budget_bytes);
+  const double least =
+      static_cast<double>(minimum_budget(manifest, {.samples = samples}) + 1) / static_cast<double>(budget_bytes);
   return std::max(share, std::min(least, 1.0));
 }
 

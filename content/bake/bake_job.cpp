@@ -64,7 +64,8 @@ void check_options(const BakeOptions& options) {
     throw BadUsage("--spacing is for grids; with --error or --budget probes stand where they are needed");
   }
   if (!(options.light_tolerance >= 0.0 && options.light_tolerance <= 1.0)) {
-    throw BadUsage(fmt::format("--light-tolerance {} is not a share between 0 and 1; 0.01 is the default", options.light_tolerance));
+    throw BadUsage(fmt::format("--light-tolerance {} is not a share between 0 and 1; 0.01 is the default",
+                               options.light_tolerance));
   }
   if (options.pack.extension() != ".probes") {
     throw BadUsage(fmt::format("a pack's name ends in .probes, this one does not: {}", options.pack.string()));
@@ -119,9 +120,9 @@ class BakeJob {
     inputs_.cells = earlier_ ? earlier_->inputs.cells : SpaceCells::around(scene_.bounds);
     if (!options_.target.asked()) place();
     const SpaceCells& cells = inputs_.cells;
-    const std::string key_text = fmt::format("{}{} {:a} {:a} {} {} {} {} {} {}", manifest_.scene_hash, manifest_.options_hash,
-                                             earlier_scale().value_or(0.0), cells.cell_m,
-                                             cells.lower.x, cells.lower.y, cells.lower.z, cells.dims.x, cells.dims.y, cells.dims.z);
+    const std::string key_text = fmt::format(
+        "{}{} {:a} {:a} {} {} {} {} {} {}", manifest_.scene_hash, manifest_.options_hash, earlier_scale().value_or(0.0),
+        cells.cell_m, cells.lower.x, cells.lower.y, cells.lower.z, cells.dims.x, cells.dims.y, cells.dims.z);
     const std::string key = content_hash(std::as_bytes(std::span(key_text)));
     const fs::path folder = options_.pack.string() + ".partial";
     if (options_.share > 0 && !BakeState::is_there(folder, key)) {
@@ -300,8 +301,8 @@ class BakeJob {
   void note_estimate() {
     std::vector<bool> anew = wanted_;
     for (std::size_t k = 0; k < reuse_.size(); ++k) anew[k] = anew[k] && !reuse_[k].keeps_radiance;
-    const BakeEstimate estimate = estimate_bake(scene_, rays_, options_.light, levels_, probes_in(anew),
-                                                manifest_.probe_positions_m.front());
+    const BakeEstimate estimate =
+        estimate_bake(scene_, rays_, options_.light, levels_, probes_in(anew), manifest_.probe_positions_m.front());
     progress_.note(fmt::format("{} probes in {} rooms, {:.1f} million texels: about {:.0f} s and {:.0f} MiB on disk",
                                probes_in(anew), std::count(anew.begin(), anew.end(), true),
                                static_cast<double>(estimate.texels) * 1e-6, estimate.seconds,
@@ -312,14 +313,16 @@ class BakeJob {
   void find_what_is_kept(const LightField& light) {
     reuse_.resize(manifest_.rooms.size());
     inputs_.rooms.resize(manifest_.rooms.size());
-    if (options_.shares > 0 && !earlier_) return;
+    if ((options_.shares > 0 || !options_.only_room.empty()) && !earlier_) return;  // nobody will ask
     inputs_.scene = hash_scene(scene_, inputs_.cells);
     inputs_.light = hash_light(light, inputs_.cells);
     if (!earlier_) return;
+    const std::size_t points = inputs_.light.identities.size();
     const std::vector<std::uint32_t> numbers = numbers_now(earlier_->inputs.light, inputs_.light);
     if (!options_.only_room.empty()) {  // wanted_rooms() has seen that the earlier rooms are these
       for (std::size_t k = 0; k < wanted_.size(); ++k) {
-        if (!wanted_[k]) keep_inputs(inputs_.rooms[k], earlier_->inputs.rooms[k], numbers);
+        const RoomReuse whole{int(k), true, true, earlier_->inputs.rooms[k].drift, {}};
+        if (!wanted_[k]) inputs_.rooms[k] = kept_inputs(*earlier_, whole, numbers, points);
       }
       return;
     }
@@ -333,47 +336,16 @@ class BakeJob {
     }
     reuse_ = compare_rooms(*earlier_, sized, inputs_.scene, inputs_.light, options_.light_tolerance);
     for (std::size_t k = 0; k < reuse_.size(); ++k) {
-      RoomReuse& reuse = reuse_[k];
-      if ((reuse.keeps_geometry || reuse.keeps_radiance) && !is_sound(reuse)) {
-        reuse.keeps_geometry = reuse.keeps_radiance = false;
-        reuse.reason = "what the pack has of it is damaged";
-      }
-      RoomInputs& inputs = inputs_.rooms[k];
-      if (reuse.earlier >= 0) {
-        RoomInputs before;
-        keep_inputs(before, earlier_->inputs.rooms[std::size_t(reuse.earlier)], numbers);
-        if (reuse.keeps_geometry) {
-          inputs.geometry = std::move(before.geometry);
-          inputs.sees_sky = before.sees_sky;
-          inputs.cut_cells = before.cut_cells;
-          inputs.cells = before.cells;
-        }
-        if (reuse.keeps_radiance) inputs.radiance = std::move(before.radiance);
-      }
-      if (!reuse.keeps_radiance) reuse.drift = 0.0f;
-      inputs.drift = reuse.drift;
-      report_.kept.push_back({manifest_.rooms[k].id, reuse.keeps_geometry, reuse.keeps_radiance, reuse.drift, reuse.reason});
+      const RoomReuse& reuse = reuse_[k];
+      inputs_.rooms[k] = kept_inputs(*earlier_, reuse, numbers, points);
+      report_.kept.push_back(
+          {manifest_.rooms[k].id, reuse.keeps_geometry, reuse.keeps_radiance, reuse.drift, reuse.reason});
     }
-    const auto whole = std::count_if(reuse_.begin(), reuse_.end(), [](const RoomReuse& r) { return r.keeps_geometry && r.keeps_radiance; });
-    progress_.note(fmt::format("{} of {} rooms are kept as they are in {}", whole, reuse_.size(), options_.pack.string()));
+    const auto whole = std::count_if(reuse_.begin(), reuse_.end(),
+                                     [](const RoomReuse& r) { return r.keeps_geometry && r.keeps_radiance; });
+    progress_.note(
+        fmt::format("{} of {} rooms are kept as they are in {}", whole, reuse_.size(), options_.pack.string()));
     if (!options_.target.asked()) note_estimate();
-  }
-
-  void keep_inputs(RoomInputs& to, const RoomInputs& from, const std::vector<std::uint32_t>& numbers) const {
-    to = from;
-    to.radiance.points = IndexSet(inputs_.light.identities.size());
-    from.radiance.points.for_each([&](std::size_t k) {
-      if (k < numbers.size() && numbers[k] != kNoPoint) to.radiance.points.insert(numbers[k]);
-    });
-  }
-
-  bool is_sound(const RoomReuse& reuse) const {
-    try {
-      for (const LevelEntry& level : earlier_->pack.manifest().rooms[std::size_t(reuse.earlier)].levels) earlier_->pack.read_chunk(level);
-      return true;
-    } catch (const BadInput&) {
-      return false;
-    }
   }
 
   void bake_rooms(MapStore& maps, const BakeState& state, const std::vector<bool>& wanted) {
@@ -483,7 +455,8 @@ class BakeJob {
     for (std::uint32_t k = 0; k < room.probe_count; ++k) {
       radiance.push_back(bake_radiance_of(maps, room_index, k, size));
     }
-    const std::vector<std::byte> chunk = replace_radiance(earlier_->pack.read_chunk(before), std::move(radiance), options_.pack.string());
+    const std::vector<std::byte> chunk =
+        replace_radiance(earlier_->pack.read_chunk(before), std::move(radiance), options_.pack.string());
     entry.bytes_disk = chunk.size();
     entry.chunk = writer.add_chunk(chunk);
     return entry;
@@ -523,21 +496,21 @@ class BakeJob {
       level.probes.push_back(std::move(probe));
     }
     const std::vector<std::byte> chunk = encode_level(level, entry);
-    const std::uint64_t tiled = size.geometry < kLeastTiledSide ? 0 : tiled_bytes(decode_chunk(chunk, "the chunk just made"));
-    if (tiled < entry.bytes_device) entry.bytes_tiled = tiled;
     entry.bytes_disk = chunk.size();
     entry.chunk = writer.add_chunk(chunk);
     return entry;
   }
 
-  // On the device, of the samples that a reader gets.
-  static std::uint64_t tiled_bytes(const RoomLevel& level) {
+  // On the device.
+  static void state_tiled_bytes(const RoomLevel& level, LevelEntry& entry) {
+    if (entry.geometry_size < std::uint32_t(kLeastTiledSide)) return;
     std::atomic<std::uint64_t> words = 0;
     tbb::parallel_for(std::size_t{0}, level.probes.size(), [&](std::size_t k) {
       const DeviceProbe probe = build_device_probe(level.probes[k], PyramidMaker::kDevice, DeviceSamples::kTiled);
       words += probe.geometry.size() + probe.radiance.size();
     });
-    return words * sizeof(std::uint32_t);
+    const std::uint64_t bytes = words * sizeof(std::uint32_t);
+    if (bytes < entry.bytes_device) entry.bytes_tiled = bytes;
   }
 
   // Quantised where that is asked for, or is smaller and stays within its bounds: looked at in what a reader will see.
@@ -546,7 +519,8 @@ class BakeJob {
     std::vector<std::byte> chunk = encode_chunk(level, options_.samples, &sizes);
     const bool tried = sizes.bytes_quantised > 0 && (sizes.bytes_float == 0 || sizes.bytes_quantised < sizes.bytes_float);
     if (tried) {
-      const QuantisedLevel found = compare_samples(level, decode_chunk(chunk, "the chunk just made"));
+      const RoomLevel stored = decode_chunk(chunk, "the chunk just made");
+      const QuantisedLevel found = compare_samples(level, stored);
       entry.quantised = options_.samples == SampleCoding::kQuantised || found.keeps_bounds();
       if (entry.quantised) {
         ++report_.quantised_levels;
@@ -554,10 +528,12 @@ class BakeJob {
         planar_before_ += found.planar_before;
         planar_after_ += found.planar_after;
         add_feature(kQuantisedFeature);
+        state_tiled_bytes(stored, entry);
       } else {
         chunk = encode_chunk(level);
       }
     }
+    if (!entry.quantised) state_tiled_bytes(level, entry);
     report_.samples_bytes_float += sizes.bytes_float;
     report_.samples_bytes_disk += entry.quantised ? sizes.bytes_quantised : sizes.bytes_float;
     if (planar_before_ > 0) report_.planar_fraction = double(planar_after_) / double(planar_before_);

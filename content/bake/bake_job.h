@@ -35,12 +35,14 @@ struct BakeOptions {
   // a part of the maps each, and leave them beside the pack; a bake without a share then finishes it. 0 = the whole bake.
   int shares = 0, share = 0;
   std::string only_room;           // bake this room's chunks anew, keep the rest of an existing pack
-  // What of an earlier pack of that name, baked with the same options, is still true of the scene is kept, unless all is set.
+  // What of an earlier pack of that name, baked with the same options, is still true of the scene is kept, unless all
+  // is set.
   bool all = false;
-  // The scale of an earlier bake's radiance, which is kept as long as brightness stays within a factor of two: else one more
-  // lamp could mean to write all radiance anew. Set from the earlier pack where there is one.
+  // The scale of an earlier bake's radiance, which is kept as long as brightness stays within a factor of two: else one
+  // more lamp could mean to write all radiance anew. Set from the earlier pack where there is one.
   std::optional<double> kept_radiance_scale;
-  // Light that changed by no more than this, relative to what arrives, is kept too; 0 = what is kept has a full bake's bytes.
+  // Light that changed by no more than this, relative to what arrives, is kept too; 0 = what is kept has a full bake's
+  // bytes.
   double light_tolerance = 0.01;
   std::string isa;
   std::string producer = "probewalk";  // as the manifest names it
@@ -58,7 +60,8 @@ struct BakeReport {
   std::size_t rooms = 0, probes = 0, levels = 0;
   std::size_t share_maps = 0;       // of a share: maps that are there now; nothing else is filled in then
   std::vector<RoomKept> kept;       // by room; empty when there was nothing to keep
-  std::size_t maps = 0, kept_maps = 0;  // of all probes and levels: geometry and radiance each; kept from an earlier pack
+  std::size_t maps = 0,
+              kept_maps = 0;        // of all probes and levels: geometry and radiance each; kept from an earlier pack
   std::uint64_t texels = 0;         // radiance texels baked, all levels, mips not counted
   std::uint64_t rays = 0;
   double seconds = 0.0;
@@ -75,8 +78,8 @@ struct BakeReport {
   std::filesystem::path plan;       // picture from above beside the pack: floors, rooms, probes, tour
 };
 
-// Throws BadInput, BadUsage, Interrupted. An existing whole pack of other options is replaced; of one with these options
-// what the scene's changes do not reach is kept (content/bake/rebake/).
+// Throws BadInput, BadUsage, Interrupted. An existing whole pack of other options is replaced; of one with these
+// options what the scene's changes do not reach is kept (content/bake/rebake/).
 BakeReport bake(const BakeOptions& options, Progress& progress);
 
 }  // namespace probewalk

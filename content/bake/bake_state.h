@@ -25,8 +25,8 @@ class BakeState {
   // Throws BadInput when the disk is full.
   void store_light(const std::vector<glm::vec3>& values) const;
 
-  // A map by the place it was baked from and its size, and what it was made of. Nothing when it is not there or cannot be
-  // believed.
+  // A map by the place it was baked from and its size, and what it was made of. Nothing when it is not there or cannot
+  // be believed.
   std::optional<ProbeGeometry> load_geometry(glm::dvec3 position_m, int n, MapInputs& inputs) const;
   std::optional<ProbeRadiance> load_radiance(glm::dvec3 position_m, int r, MapInputs& inputs) const;
   // Throw BadInput when the disk is full.

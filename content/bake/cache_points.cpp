@@ -224,14 +224,16 @@ glm::vec3 CachePoints::interpolate(const std::vector<glm::vec3>& values, glm::ve
     blocked_weights += blocked;
   });
   if (open_weights > kVanishing) return open_sum / open_weights;
-  // No point sees the place: any light is better there than none. Elsewhere one behind a wall has no say at all, or what
-  // changes in a closed room would change the next.
+  // No point sees the place: any light is better there than none. Elsewhere one behind a wall has no say at all, or
+  // what changes in a closed room would change the next.
   return blocked_weights > kVanishing ? blocked_sum / blocked_weights : glm::vec3(0.0f);
 }
 
-glm::vec3 CachePoints::interpolate_seen(const std::vector<glm::vec3>& values, glm::vec3 position_m, glm::vec3 normal) const {
+glm::vec3 CachePoints::interpolate_seen(const std::vector<glm::vec3>& values, glm::vec3 position_m,
+                                        glm::vec3 normal) const {
   glm::vec3 sum(0.0f);
-  const float weights = for_each_weight(position_m, normal, [&](std::uint32_t point, float open, float) { sum += values[point] * open; });
+  const float weights =
+      for_each_weight(position_m, normal, [&](std::uint32_t point, float open, float) { sum += values[point] * open; });
   return weights > kVanishing ? sum / weights : glm::vec3(0.0f);
 }
 

@@ -61,8 +61,8 @@ class CachePoints {
 
  private:
   static constexpr float kVanishing = 1e-12f;
-  static constexpr float kOffPlane = 6.0f;      // distance across the surface counts this much more than along it
-  static constexpr float kLeastFacing = 0.2f;   // cosine below which a point says nothing
+  static constexpr float kOffPlane = 6.0f;     // distance across the surface counts this much more than along it
+  static constexpr float kLeastFacing = 0.2f;  // cosine below which a point says nothing
   static constexpr float kNearSteps = 12.0f;
   // What decides whether a point matters at a place, copied beside its neighbours': looking is most of the work.
   struct Member {

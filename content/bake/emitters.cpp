@@ -187,7 +187,8 @@ std::vector<std::uint64_t> emitter_hashes(const Emitters& emitters) {
   };
   for (const PunctualEmitter& emitter : emitters.lights) {
     const Light& light = emitter.light;
-    values = {static_cast<float>(light.kind), light.range_m, light.inner_cone_rad, light.outer_cone_rad, emitter.lamp_radius_m};
+    values = {static_cast<float>(light.kind), light.range_m, light.inner_cone_rad, light.outer_cone_rad,
+              emitter.lamp_radius_m};
     for (glm::vec3 v : {light.position_m, light.direction, light.intensity}) add(v);
     finish();
   }

@@ -91,8 +91,10 @@ struct IrradianceCache::Gather {
     return values;
   }
 
-  // emitted receives what surfaces send by themselves; in sets points are joined that light passes between. Both may be null.
-  Values gather(const Values& source, int samples, std::uint32_t pass, Values* emitted, PointSets* sets, std::uint64_t& cast) {
+  // emitted receives what surfaces send by themselves; in sets points are joined that light passes between. Both may be
+  // null.
+  Values gather(const Values& source, int samples, std::uint32_t pass, Values* emitted, PointSets* sets,
+                std::uint64_t& cast) {
     Values values(points.size(), glm::vec3(0.0f));
     if (emitted) emitted->assign(points.size(), glm::vec3(0.0f));
     for_each_point([&](std::size_t k) {
@@ -146,7 +148,8 @@ struct IrradianceCache::Gather {
       if (emitted && !direct.emitters().is_patch[hit.triangle]) own += surface.emission_cd_m2;
       sum += surface.albedo * points.interpolate_seen(source, surface.position_m, surface.normal);
       if (!sets) continue;
-      points.for_each_seen(surface.position_m, surface.normal, [&](std::uint32_t p) { sets->join(std::uint32_t(k), p); });
+      points.for_each_seen(surface.position_m, surface.normal,
+                           [&](std::uint32_t p) { sets->join(std::uint32_t(k), p); });
     }
     // Cosine-distributed: irradiance = pi * mean radiance; reflected radiance = albedo / pi * irradiance.
     reflected = sum / static_cast<float>(samples);
@@ -182,11 +185,13 @@ IrradianceCache::IrradianceCache(const Scene& scene, const RayScene& rays, const
   for (int bounce = 2; bounce <= bounces + 1; ++bounce) {
     const bool is_last = bounce == bounces + 1;
     if (is_last) before = last;
-    last = gather.gather(last, rays_of_bounce(options.samples, bounce), bounce, nullptr, is_last ? &sets : nullptr, rays_cast_);
+    last = gather.gather(last, rays_of_bounce(options.samples, bounce), bounce, nullptr, is_last ? &sets : nullptr,
+                         rays_cast_);
     if (!is_last) add(indirect_, last);
   }
-  // What the bounces beyond would add, each a constant share of the one before: of its own in every part of the scene that
-  // no light leaves. A white room is not darker for a black one beside it, and stays as it is when that is painted.
+  // What the bounces beyond would add, each a constant share of the one before: of its own in every part of the scene
+  // that no light leaves. A white room is not darker for a black one beside it, and stays as it is when that is
+  // painted.
   const std::vector<glm::dvec3> totals_before = totals(before, sets), totals_now = totals(last, sets);
   for (std::size_t k = 0; k < indirect_.size(); ++k) {
     const std::uint32_t part = sets.first_of(std::uint32_t(k));

@@ -154,11 +154,14 @@ LightGrid::Nearby LightGrid::at(glm::vec3 position_m, glm::vec3 geometric_normal
 }
 
 glm::vec3 LightGrid::corner_m(std::uint64_t key) const {
-  const auto part = [&](int shift) { return static_cast<float>(static_cast<int>(key >> shift & 0xFFFFFu) - (1 << 19)); };
+  const auto part = [&](int shift) {
+    return static_cast<float>(static_cast<int>(key >> shift & 0xFFFFFu) - (1 << 19));
+  };
   return glm::vec3(part(43), part(23), part(3)) * cell_m_;
 }
 
-std::uint64_t LightGrid::hash(std::uint64_t key, const Cell& cell, std::span<const std::uint64_t> emitters, std::uint64_t all) {
+std::uint64_t LightGrid::hash(std::uint64_t key, const Cell& cell, std::span<const std::uint64_t> emitters,
+                              std::uint64_t all) {
   std::vector<std::uint64_t> words{key, std::bit_cast<std::uint32_t>(cell.far_lux)};
   if (cell.far_lux > 0.0f) words.push_back(all);
   for (const Listed& listed : cell.listed) {

@@ -62,7 +62,8 @@ class LightGrid {
   std::uint64_t key(glm::ivec3 cell, int face) const;
   const Cell* find(glm::vec3 position_m, glm::vec3 geometric_normal) const;
   glm::vec3 corner_m(std::uint64_t key) const;
-  static std::uint64_t hash(std::uint64_t key, const Cell& cell, std::span<const std::uint64_t> emitters, std::uint64_t all);
+  static std::uint64_t hash(std::uint64_t key, const Cell& cell, std::span<const std::uint64_t> emitters,
+                            std::uint64_t all);
 
   float cell_m_ = 1.0f;
   std::vector<Listed> all_;

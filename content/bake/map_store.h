@@ -12,7 +12,8 @@ namespace probewalk {
 class MapStore {
  public:
   // All must outlive this.
-  MapStore(const RayScene& rays, const LightField& light, float radiance_scale, const BakeState& state, SpaceCells cells)
+  MapStore(const RayScene& rays, const LightField& light, float radiance_scale, const BakeState& state,
+           SpaceCells cells)
       : rays_(rays), light_(light), radiance_scale_(radiance_scale), state_(state), cells_(cells) {}
 
   // What the map was made of joins `inputs`.

@@ -26,11 +26,15 @@ Placement place_probes(const Scene& scene, const RayScene& rays, const Space& sp
   placement.sites = choose_sites(placement.grid, rays, space, heads, std::size_t(options.max_probes), counts);
   const ProbeGrid& grid = placement.grid;
   placement.statement = fmt::format(
-      "{} probes on a grid of {} x {} x {} vertices, {:.2f} x {:.2f} x {:.2f} m apart{}: {} moved off their vertex, {} added "
+      "{} probes on a grid of {} x {} x {} vertices, {:.2f} x {:.2f} x {:.2f} m apart{}: {} moved off their vertex, {} "
+      "added "
       "where heads saw few, {} vertices near heads served by a neighbour's",
-      placement.sites.size(), grid.dims.x, grid.dims.y, grid.dims.z, grid.spacing_m.x, grid.spacing_m.y, grid.spacing_m.z,
+      placement.sites.size(), grid.dims.x, grid.dims.y, grid.dims.z, grid.spacing_m.x, grid.spacing_m.y,
+      grid.spacing_m.z,
       is_kept ? " (the earlier bake's)"
-      : std::max(grid.spacing_m.x, grid.spacing_m.z) > 1.3 * spacing_m ? fmt::format(" (widened from {:.2f})", spacing_m) : "",
+      : std::max(grid.spacing_m.x, grid.spacing_m.z) > 1.3 * spacing_m
+          ? fmt::format(" (widened from {:.2f})", spacing_m)
+          : "",
       counts.moved, counts.added, counts.shared);
   return placement;
 }

@@ -140,7 +140,8 @@ std::string describe(const TracerChoice& choice) {
   name_if(rules.last_resort != usual.last_resort, fmt::format("last resort {}", word_of(kLast, rules.last_resort)));
   if (choice.distance_weight) words.push_back(fmt::format("distance weight {:g}", *choice.distance_weight));
   if (choice.max_tries) words.push_back(fmt::format("at most {} tries", *choice.max_tries));
-  name_if(choice.samples != plain.samples, choice.samples == DeviceSamples::kTiled ? "samples in tiles" : "samples as floats");
+  name_if(choice.samples != plain.samples,
+          choice.samples == DeviceSamples::kTiled ? "samples in tiles" : "samples as floats");
   // What follows is said to baselines alone.
   const BaselineConstants &dials = choice.needs_maps() ? choice.baseline : plain.baseline, &usual_dials = plain.baseline;
   name_if(choice.epsilon_rule != plain.epsilon_rule, fmt::format("epsilon {}", word_of(kEpsilon, choice.epsilon_rule)));

@@ -113,7 +113,8 @@ Section make_section(ChunkSection kind, const RoomLevel& level, const ChunkCount
   return section;
 }
 
-std::vector<std::byte> join_sections(const ChunkCounts& counts, const glm::dvec3& origin_m, const std::vector<Section>& sections) {
+std::vector<std::byte> join_sections(const ChunkCounts& counts, const glm::dvec3& origin_m,
+                                     const std::vector<Section>& sections) {
   ChunkHeader header{counts, origin_m, {}};
   for (const Section& section : sections) header.sections.push_back(section.entry);
   std::vector<std::byte> chunk = write_chunk_header(header);
@@ -160,7 +161,8 @@ std::vector<std::byte> replace_radiance(std::span<const std::byte> chunk, std::v
                                         const std::string& source) {
   const ChunkHeader header = read_chunk_header(chunk, source);
   RoomLevel level{header.room_origin_m, {}};
-  if (radiance.size() != header.counts.probes) throw BadInput(source + ": it has another number of probes than radiance maps");
+  if (radiance.size() != header.counts.probes)
+    throw BadInput(source + ": it has another number of probes than radiance maps");
   for (ProbeRadiance& map : radiance) {
     if (map.r != static_cast<int>(header.counts.radiance_r) || map.rgb9e5.size() != mip_texel_count(header.counts) ||
         map.texel_w.size() != texel_count(header.counts)) {

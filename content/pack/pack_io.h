@@ -42,8 +42,9 @@ std::string content_hash(std::span<const std::byte> bytes);
 // XXH3-64, where millions are kept.
 std::uint64_t short_hash(std::span<const std::byte> bytes, std::uint64_t seed = 0);
 
-// A chunk of the same probes with other radiance: the bytes that encode_chunk makes of both, without coding the geometry
-// again. `chunk` is one that a bake of the same producer has made; `radiance` has one map a probe. Throws BadInput.
+// A chunk of the same probes with other radiance: the bytes that encode_chunk makes of both, without coding the
+// geometry again. `chunk` is one that a bake of the same producer has made; `radiance` has one map a probe. Throws
+// BadInput.
 std::vector<std::byte> replace_radiance(std::span<const std::byte> chunk, std::vector<ProbeRadiance> radiance,
                                         const std::string& source);
 

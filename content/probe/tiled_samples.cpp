@@ -77,11 +77,6 @@ std::optional<TileWords> words_of(const TileBits& bits) {
 
 }  // namespace
 
-std::uint64_t least_tiled_words(std::uint64_t n) {
-  const std::uint64_t across = (n >> kDeviceTileLog2) + 1;
-  return across * across * kDeviceTileWords;
-}
-
 DeviceTiles tile_samples(std::span<const float> w, int n) {
   const std::size_t pitch = static_cast<std::size_t>(n) + 1,
                     across = (static_cast<std::size_t>(n) >> kDeviceTileLog2) + 1;

@@ -29,9 +29,6 @@ struct DeviceTiles {
   std::uint64_t words() const { return tiles.size() + floats.size(); }
 };
 
-// Words of the least that tiles of a map of n cells a side can take.
-std::uint64_t least_tiled_words(std::uint64_t n);
-
 // w: (n+1)^2 floats of any bits, n a power of two of at least kDeviceTileSide (shaders/shared/probe_layout.h).
 DeviceTiles tile_samples(std::span<const float> w, int n);
 

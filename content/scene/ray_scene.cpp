@@ -49,7 +49,8 @@ SurfaceHit RayScene::closest(glm::vec3 origin_m, glm::vec3 direction, float t_ne
   query.ray = make_ray(origin_m, direction, t_near, t_far);
   query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   rtcIntersect1(impl_->bvh.get(), &query);
-  if (listener_) listener_->passed(origin_m, direction, query.hit.geomID == RTC_INVALID_GEOMETRY_ID ? t_far : query.ray.tfar);
+  if (listener_)
+    listener_->passed(origin_m, direction, query.hit.geomID == RTC_INVALID_GEOMETRY_ID ? t_far : query.ray.tfar);
   SurfaceHit result;
   if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return result;
   result.hit = true;

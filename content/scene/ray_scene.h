@@ -25,7 +25,8 @@ class RayListener {
   virtual ~RayListener() = default;
   // A ray whose first hit is at t_end, or that met nothing up to there (infinity: nothing at all).
   virtual void passed(glm::vec3 origin_m, glm::vec3 direction, float t_end) = 0;
-  // A ray that asked whether it is occluded: by the surface at this place, and perhaps by others, which is all the same.
+  // A ray that asked whether it is occluded: by the surface at this place, and perhaps by others, which is all the
+  // same.
   virtual void blocked(glm::vec3 at_m) = 0;
 };
 

@@ -154,8 +154,8 @@ struct SceneLoadOptions {
 // Beside what glTF defines, `extras` say what it has no words for; all lengths in file units, radiances in cd/m^2:
 // - scene: "probewalk_sky": {"zenith": [r, g, b], "horizon": [...], "ground": [...]}, "probewalk_start": [x, y, z]
 // - node: "probewalk_room": "Name" with "probewalk_room_min" and "probewalk_room_max", a box in the node's own space.
-// A rooms file (`rooms_file`, else rooms.json beside the scene) wins over the nodes' rooms; content/scene/gltf/rooms_file.h
-// says what stands in it.
+// A rooms file (`rooms_file`, else rooms.json beside the scene) wins over the nodes' rooms;
+// content/scene/gltf/rooms_file.h says what stands in it.
 //
 // A scene without light (no light source, no sky, emission too weak to see by, not everything unlit) is given the
 // default of default_light.h, which adds emissive panels to its triangles; light_statement says so.

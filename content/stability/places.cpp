@@ -147,10 +147,7 @@ const std::vector<Recipe>& recipes() {
   static const std::vector<Recipe> all{
       {PlaceId::kRoom, "furnished room", 128, 1.0, [] { return room(128); }},
       {PlaceId::kGrille, "grille", 128, 1.0, [] { return grille(128); }},
-      {PlaceId::kLeaves, "foliage", 128, 1.0,
-       [] {
-         return baked(leafy_room(), {0.0, 1.25, 0.0}, 128);
-       }},
+      {PlaceId::kLeaves, "foliage", 128, 1.0, [] { return baked(leafy_room(), {0.0, 1.25, 0.0}, 128); }},
       {PlaceId::kRoomFine, "furnished room", 512, 1.0, [] { return room(512); }},
       {PlaceId::kGrilleFine, "grille", 512, 1.0, [] { return grille(512); }},
       {PlaceId::kTiny, "room of 1 mm", 64, 1e-3 / kRoomWidth_m, [] { return scaled(room(64), 1e-3 / kRoomWidth_m); }},
@@ -161,20 +158,17 @@ const std::vector<Recipe>& recipes() {
          geometry.position_m = {1e5 + 0.1, -3e4 - 0.7, 7e4 + 1.0 / 3.0};
          return geometry;
        }},
-      {PlaceId::kPlain, "plain to 1e4 m", 128, 1.0,
-       [] {
-         return baked(wide_plain(), {0.0, 1.5, 0.0}, 128);
-       }},
+      {PlaceId::kPlain, "plain to 1e4 m", 128, 1.0, [] { return baked(wide_plain(), {0.0, 1.5, 0.0}, 128); }},
       {PlaceId::kSky, "sky", 64, 1.0, [] { return made(64, [](int, int) { return 0.0f; }); }},
-      {PlaceId::kSolid, "inside a pillar", 64, 1.0,
-       [] {
-         return baked(furnished_room(), {-1.83, 1.2, -1.57}, 64);
-       }},
+      {PlaceId::kSolid, "inside a pillar", 64, 1.0, [] { return baked(furnished_room(), {-1.83, 1.2, -1.57}, 64); }},
       {PlaceId::kLeast, "samples at limits", 32, 1.0, [] { return at_limits(); }, DeviceSamples::kTiledAlways},
       {PlaceId::kSteps, "samples of 16 bits", 64, 1.0, [] { return in_steps(room(64)); }, DeviceSamples::kTiledAlways},
-      {PlaceId::kQuantised, "quantised room", 128, 1.0, [] { return quantised(room(128)); }, DeviceSamples::kTiledAlways},
-      {PlaceId::kQuantisedGrille, "quantised grille", 128, 1.0, [] { return quantised(grille(128)); }, DeviceSamples::kTiledAlways},
-      {PlaceId::kQuantisedLimits, "quantised tiles at limits", 64, 1.0, [] { return quantised_limits(); }, DeviceSamples::kTiledAlways},
+      {PlaceId::kQuantised, "quantised room", 128, 1.0, [] { return quantised(room(128)); },
+       DeviceSamples::kTiledAlways},
+      {PlaceId::kQuantisedGrille, "quantised grille", 128, 1.0, [] { return quantised(grille(128)); },
+       DeviceSamples::kTiledAlways},
+      {PlaceId::kQuantisedLimits, "quantised tiles at limits", 64, 1.0, [] { return quantised_limits(); },
+       DeviceSamples::kTiledAlways},
       {PlaceId::kTorn, "cuts at limits", 64, 1.0, [] { return torn(); }, DeviceSamples::kTiledAlways},
   };
   return all;

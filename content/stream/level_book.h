@@ -25,8 +25,7 @@ enum class LevelStatus : std::uint8_t {
 
 // Device bytes to set aside for a level of a room before it has been decoded: what the pack states, kept within what
 // maps of its size can take.
-std::uint64_t planned_bytes(const RoomEntry& room, const LevelEntry& level,
-                            DeviceSamples samples = kDefaultSamples);
+std::uint64_t planned_bytes(const RoomEntry& room, const LevelEntry& level, DeviceSamples samples = kDefaultSamples);
 
 class LevelBook {
  public:

@@ -9,11 +9,12 @@
 //     (n/8+1)^2 * 12     tiles of 8 x 8 cells, row-major; a tile holds all its cells' 9 x 9 vertices. Of those in the
 //                        last row and column there is only the first vertex:
 //       [0]                w at its first vertex, float bits
-//       [1]                key: bits 0..3 how many octaves finer than the last place of [0] the unit is; the rest: slope
-//                          along x, in 1/8 unit a vertex. Or bits 0..3 are kTileOfFloats; the rest: word of the block
+//       [1]                key: bits 0..3 how many octaves finer than the last place of [0] the unit is; the rest:
+//                          slope along x, in 1/8 unit a vertex. Or bits 0..3 are kTileOfFloats; the rest: word of the block
 //                          where the tile's samples lie as floats
 //       [2]                slope along y
-//       [3..11]            rows: for each of the 9 vertices 3 bits, low ones first; bits 27..31 are signed and common to all
+//       [3..11]            rows: for each of the 9 vertices 3 bits, low ones first; bits 27..31 are signed and
+//                          common to all
 //                      w = ([0] in units + ((slope_x x + slope_y y) >> 3) + common + own) * unit
 //     (padding)          up to a multiple of 8 words
 //   pyramid            levels 1, 3, 5 .. up to n_log2-3, level l has (n >> l)^2 entries of 16 bits, in nodes of 4 x 4
@@ -94,7 +95,7 @@ struct ProbeRecord {
   pw_uvec2 radiance_address;
   pw_uvec2 coarse_radiance_address;  // of the level that this one replaces, while coarse_share > 0
   pw_uint r_log2;                    // bits 0..7; bits 8..15: that of the coarse radiance
-  pw_uint flags;                     // bit 0: has cuts; bit 1: samples in tiles; bits 16..31: coarse_share, in 1/65535 of the radiance
+  pw_uint flags;  // bit 0: has cuts; bit 1: samples in tiles; bits 16..31: coarse_share, in 1/65535 of the radiance
 };
 
 // The building's probe grid: vertex (x, y, z) at origin + spacing * (x, y, z) is served by probe table[(z dy + y) dx +

@@ -9,7 +9,8 @@
 PW_SHARED_BEGIN
 
 // One pass over a part of one level, as the shaders are pushed it (render/pipeline.h: PushConstants).
-// `level_of`: level | n_log2 << 8 | tiled samples << 16. `first`: word of the level that the first group, or its first thread, makes.
+// `level_of`: level | n_log2 << 8 | tiled samples << 16. `first`: word of the level that the first group, or its first
+// thread, makes.
 PW_CONSTANT int kCellsGroup = 64;  // threads of build_pyramid_cells.comp, a word each
 PW_CONSTANT int kNodesGroup = 64;  // threads of build_pyramid_nodes.comp, for one word together
 

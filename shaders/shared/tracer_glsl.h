@@ -31,7 +31,8 @@ BaselineRecord pw_baseline(BaselineConstants constants, int index) {
 }
 #endif
 
-// Whether any probe can have its samples in tiles; fixed when a pipeline is made, so that floats alone cost nothing more.
+// Whether any probe can have its samples in tiles; fixed when a pipeline is made, so that floats alone cost nothing
+// more.
 layout(constant_id = 17) const int kTiledSamples = 1;
 #define PW_MAY_TILE (kTiledSamples != 0)
 

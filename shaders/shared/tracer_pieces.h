@@ -129,8 +129,8 @@ PW_FUNCTION CutEdges cut_edges(pw_uint word) {
   return edges;
 }
 
-// Disconnected edges of a triangle: bits for those from its corner 0 to 1, 1 to 2, 2 to 0 (corner 0 is (0, 0) or (1, 1),
-// the others (1, 0) and (0, 1)).
+// Disconnected edges of a triangle: bits for those from its corner 0 to 1, 1 to 2, 2 to 0. Corner 0 is (0, 0) or (1, 1),
+// the others (1, 0) and (0, 1).
 PW_FUNCTION int cut_mask(CutEdges edges, bool high) {
   int mask = edges.diagonal != 0u ? 2 : 0;
   if ((high ? edges.high_v : edges.low_u) != 0u) mask |= 1;
@@ -152,9 +152,9 @@ PW_FUNCTION real sign_change(real a, real b) {
 
 // A triangle with disconnected edges: cut lines split it into regions, each with its own vertex's plane. The ray's
 // piece runs from p0 (w r0, lambda l0) to p1 in the cell's unit square. corner_w: w at v0, v1, v2.
-PW_FUNCTION bool meet_cut_triangle(pw_uvec2 geometry, int record, CutEdges edges, bool high, bool on_fold, real3 corner_w,
-                                   real l0, real r0, real2 p0, real l1, real r1, real2 p1, PW_INOUT(bool) known,
-                                   PW_INOUT(Meeting) m) {
+PW_FUNCTION bool meet_cut_triangle(pw_uvec2 geometry, int record, CutEdges edges, bool high, bool on_fold,
+                                   real3 corner_w, real l0, real r0, real2 p0, real l1, real r1, real2 p1,
+                                   PW_INOUT(bool) known, PW_INOUT(Meeting) m) {
   const int mask = cut_mask(edges, high);
   real2 v0 = high ? real2(1, 1) : real2(0, 0);
   real2 v1 = real2(1, 0);

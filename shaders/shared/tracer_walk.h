@@ -139,7 +139,8 @@ PW_FUNCTION bool walk_segment(ProbeRecord probe, OctantSegment s, real t_start, 
         if (planar) break;
         if (!passed) level = max(level - 2, 0);
       } else {
-        CornerSamples corners = corner_samples(geometry, tiled, n, half_n + s.side.x * ix, half_n + s.side.y * iy, s.side, 1);
+        CornerSamples corners =
+            corner_samples(geometry, tiled, n, half_n + s.side.x * ix, half_n + s.side.y * iy, s.side, 1);
         w00 = corners.w00;
         w10 = corners.w10;
         w01 = corners.w01;

@@ -382,10 +382,12 @@ void print(const Row& row) {
              row.baked_energy);
   fmt::print("  direct light chosen: energy {:.4f} of that by rays to every light, mean error {:.4f} of it\n",
              row.direct_energy, row.direct_error);
-  fmt::print("  cached light alone: energy {:.4f} of the paths', RMS error {:.4f} of all light; the rest (lights chosen, "
-             "texels sampled): {:.4f}\n",
-             row.cached_energy, row.cached_error, row.texel_error);
-  fmt::print("  the paths' own noise, deducted above: RMS {:.4f}, and {:.4f} of the energy{}\n", row.own_noise, row.own_energy,
+  fmt::print(
+      "  cached light alone: energy {:.4f} of the paths', RMS error {:.4f} of all light; the rest (lights chosen, "
+      "texels sampled): {:.4f}\n",
+      row.cached_energy, row.cached_error, row.texel_error);
+  fmt::print("  the paths' own noise, deducted above: RMS {:.4f}, and {:.4f} of the energy{}\n", row.own_noise,
+             row.own_energy,
              row.own_noise > row.baked_error ? "; it is larger than the error: --paths should be raised" : "");
   fmt::print("  threads 1 -> 2: cache {:.2f} -> {:.2f} s ({:.2f}x), maps {:.2f} -> {:.2f} s ({:.2f}x)\n",
              row.cache_wall_s[0], row.cache_wall_s[1], row.cache_wall_s[0] / row.cache_wall_s[1], row.maps_wall_s[0],
@@ -402,10 +404,9 @@ std::string to_json(const Row& row) {
       "\"rays_per_texel\": {:.6g}, \"paths_per_texel\": {}, \"paths_cpu_s\": {:.6g}, \"paths_rays_per_texel\": {:.6g}, "
       "\"cache_wall_s\": [{:.6g}, {:.6g}], \"maps_wall_s\": [{:.6g}, {:.6g}]}}",
       row.scene, row.probes, row.texels, row.cache_points, row.judged, row.baked_error, row.baked_energy,
-      row.cache_cpu_s, row.maps_cpu_s, row.direct_energy, row.direct_error, row.cached_energy, row.cached_error, row.texel_error,
-      row.own_noise, row.own_energy, row.rays_per_texel, row.paths,
-      row.path_cpu_s, row.path_rays_per_texel, row.cache_wall_s[0], row.cache_wall_s[1], row.maps_wall_s[0],
-      row.maps_wall_s[1]);
+      row.cache_cpu_s, row.maps_cpu_s, row.direct_energy, row.direct_error, row.cached_energy, row.cached_error,
+      row.texel_error, row.own_noise, row.own_energy, row.rays_per_texel, row.paths, row.path_cpu_s,
+      row.path_rays_per_texel, row.cache_wall_s[0], row.cache_wall_s[1], row.maps_wall_s[0], row.maps_wall_s[1]);
 }
 
 int run(const std::vector<std::string>& arguments) {

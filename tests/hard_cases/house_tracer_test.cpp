@@ -86,7 +86,8 @@ TEST(HouseTracer, AllCompilationsAndBruteForceAgree) {
     map.radiance.rgb9e5.assign(mip_chain_texels(8), encode_rgb9e5({1, 1, 1}));
     map.radiance.texel_w.assign(64, 0);
     // Both ways in which samples lie in memory, side by side.
-    device_probes[k] = build_device_probe(map, PyramidMaker::kHost, k % 2 == 0 ? DeviceSamples::kTiled : DeviceSamples::kFloat);
+    device_probes[k] =
+        build_device_probe(map, PyramidMaker::kHost, k % 2 == 0 ? DeviceSamples::kTiled : DeviceSamples::kFloat);
   });
   const std::vector<DeviceProbe> on_device = device_probes;
   const ProbeSet set(std::move(device_probes), placement.grid);

@@ -32,10 +32,11 @@
 #include <map>
 #include <mutex>
 #include <new>
-#include <sstream>
 #include <string>
 #include <thread>
 #include <vector>
+
+#include "layer.h"
 
 namespace {
 
@@ -98,12 +99,7 @@ Function next(const char* name) {
 void read_settings() {
   layer.~Layer();
   new (&layer) Layer;
-  const char* text = std::getenv("PROBEWALK_TEST_LAYER");
-  std::istringstream all(text != nullptr ? text : "");
-  for (std::string entry; std::getline(all, entry, ';');) {
-    const std::size_t at = entry.find('=');
-    if (at != std::string::npos) layer.settings[entry.substr(0, at)] = entry.substr(at + 1);
-  }
+  layer.settings = probewalk::test::layer_settings("PROBEWALK_TEST_LAYER");
   if (layer.settings.contains("log")) {
     layer.log.open(layer.settings["log"]);
     layer.log << "frame,display_time,layers,stalled_ms,late_mm,late_deg,early_mm,early_deg,swapchains,quads,asked\n";
@@ -304,9 +300,7 @@ XRAPI_ATTR XrResult XRAPI_CALL get_proc(XrInstance instance, const char* name, P
 
 XRAPI_ATTR XrResult XRAPI_CALL create_instance(const XrInstanceCreateInfo* info, const XrApiLayerCreateInfo* chain,
                                                XrInstance* instance) {
-  XrApiLayerCreateInfo rest = *chain;
-  rest.nextInfo = chain->nextInfo->next;
-  const XrResult result = chain->nextInfo->nextCreateApiLayerInstance(info, &rest, instance);
+  const XrResult result = probewalk::test::create_next_instance(*info, *chain, instance);
   if (XR_FAILED(result)) return result;
   read_settings();
   layer.next_proc = chain->nextInfo->nextGetInstanceProcAddr;
@@ -318,12 +312,5 @@ XRAPI_ATTR XrResult XRAPI_CALL create_instance(const XrInstanceCreateInfo* info,
 
 extern "C" XRAPI_ATTR __attribute__((visibility("default"))) XrResult XRAPI_CALL xrNegotiateLoaderApiLayerInterface(
     const XrNegotiateLoaderInfo* loader, const char*, XrNegotiateApiLayerRequest* request) {
-  if (loader == nullptr || request == nullptr || loader->minInterfaceVersion > XR_CURRENT_LOADER_API_LAYER_VERSION) {
-    return XR_ERROR_INITIALIZATION_FAILED;
-  }
-  request->layerInterfaceVersion = XR_CURRENT_LOADER_API_LAYER_VERSION;
-  request->layerApiVersion = XR_CURRENT_API_VERSION;
-  request->getInstanceProcAddr = get_proc;
-  request->createApiLayerInstance = create_instance;
-  return XR_SUCCESS;
+  return probewalk::test::negotiate(loader, request, get_proc, create_instance);
 }

@@ -1,23 +1,22 @@
 // An OpenXR API layer for tests: a headset whose refresh rate can be chosen (XR_FB_display_refresh_rate) in front of a
-// real runtime whose headset has no choice. It offers 60, 72, 90 and 119.88 Hz, begins at 72, and confirms what is asked
-// for by the event that the extension has for it, some polls later. The runtime's own pace stays what it is.
+// real runtime whose headset has no choice. It offers 60, 72, 90 and 119.88 Hz, begins at 72, and confirms what is
+// asked for by the event that the extension has for it, some polls later. The runtime's own pace stays what it is.
 //
 // PROBEWALK_TEST_REFRESH="key=value;..." in the environment:
 //   log=FILE   a line "requested HZ" for each request
 //   deaf=1     takes requests and never does anything about them
 #include <openxr/openxr.h>
-#include <openxr/openxr_loader_negotiation.h>
 
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <map>
-#include <sstream>
 #include <string>
 #include <vector>
+
+#include "layer.h"
 
 namespace {
 
@@ -37,12 +36,7 @@ Layer layer;
 
 void read_settings() {
   layer = {};
-  const char* text = std::getenv("PROBEWALK_TEST_REFRESH");
-  std::istringstream all(text != nullptr ? text : "");
-  for (std::string entry; std::getline(all, entry, ';');) {
-    const std::size_t at = entry.find('=');
-    if (at != std::string::npos) layer.settings[entry.substr(0, at)] = entry.substr(at + 1);
-  }
+  layer.settings = probewalk::test::layer_settings("PROBEWALK_TEST_REFRESH");
 }
 
 XRAPI_ATTR XrResult XRAPI_CALL enumerate_rates(XrSession, std::uint32_t capacity, std::uint32_t* count, float* rates) {
@@ -120,9 +114,7 @@ XRAPI_ATTR XrResult XRAPI_CALL create_instance(const XrInstanceCreateInfo* info,
   XrInstanceCreateInfo passed = *info;
   passed.enabledExtensionCount = static_cast<std::uint32_t>(extensions.size());
   passed.enabledExtensionNames = extensions.data();
-  XrApiLayerCreateInfo rest = *chain;
-  rest.nextInfo = chain->nextInfo->next;
-  const XrResult result = chain->nextInfo->nextCreateApiLayerInstance(&passed, &rest, instance);
+  const XrResult result = probewalk::test::create_next_instance(passed, *chain, instance);
   if (XR_FAILED(result)) return result;
   layer.next_proc = chain->nextInfo->nextGetInstanceProcAddr;
   layer.instance = *instance;
@@ -133,12 +125,5 @@ XRAPI_ATTR XrResult XRAPI_CALL create_instance(const XrInstanceCreateInfo* info,
 
 extern "C" XRAPI_ATTR __attribute__((visibility("default"))) XrResult XRAPI_CALL xrNegotiateLoaderApiLayerInterface(
     const XrNegotiateLoaderInfo* loader, const char*, XrNegotiateApiLayerRequest* request) {
-  if (loader == nullptr || request == nullptr || loader->minInterfaceVersion > XR_CURRENT_LOADER_API_LAYER_VERSION) {
-    return XR_ERROR_INITIALIZATION_FAILED;
-  }
-  request->layerInterfaceVersion = XR_CURRENT_LOADER_API_LAYER_VERSION;
-  request->layerApiVersion = XR_CURRENT_API_VERSION;
-  request->getInstanceProcAddr = get_proc;
-  request->createApiLayerInstance = create_instance;
-  return XR_SUCCESS;
+  return probewalk::test::negotiate(loader, request, get_proc, create_instance);
 }

@@ -2,8 +2,8 @@
 #pragma once
 
 #include <cmath>
-#include <initializer_list>
 #include <glm/glm.hpp>
+#include <initializer_list>
 #include <utility>
 #include <vector>
 
@@ -64,7 +64,8 @@ struct ProbeRoom {
     for (int k = 0; k < 8; ++k) {
       const glm::dvec3 position = grid.origin_m + grid.spacing_m * glm::dvec3(k & 1, k >> 1 & 1, k >> 2);
       probes.push_back(build_device_probe({bake_geometry(rays, position, n), pattern_radiance(rays, position, r)},
-                                          PyramidMaker::kHost, samples.begin()[static_cast<std::size_t>(k) % samples.size()]));
+                                          PyramidMaker::kHost,
+                                          samples.begin()[static_cast<std::size_t>(k) % samples.size()]));
       grid.probe.push_back(static_cast<std::uint32_t>(k));
     }
   }

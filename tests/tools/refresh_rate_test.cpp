@@ -1,5 +1,5 @@
-// The headset's refresh rate on a real runtime, Monado, whose simulated headset has one alone, and with a layer in front
-// of it (tests/openxr_layer) that offers 60, 72, 90 and 119.88 Hz. Skipped, with the reason, where Monado is not
+// The headset's refresh rate on a real runtime, Monado, whose simulated headset has one alone, and with a layer in
+// front of it (tests/openxr_layer) that offers 60, 72, 90 and 119.88 Hz. Skipped, with the reason, where Monado is not
 // installed.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -47,7 +47,10 @@ void print_kept(const BakeReport& report) {
   if (report.kept.empty()) return;
   std::fputs(fmt::format("  {} of {} maps kept from before:\n", report.kept_maps, report.maps).c_str(), stdout);
   for (const RoomKept& room : report.kept) {
-    const char* what = room.geometry && room.radiance ? "kept" : room.geometry ? "lit anew" : room.radiance ? "light kept" : "baked anew";
+    const char* what = room.geometry && room.radiance ? "kept"
+                       : room.geometry                ? "lit anew"
+                       : room.radiance                ? "light kept"
+                                                      : "baked anew";
     std::fputs(fmt::format("    {:<20} {:<11} {}\n", room.room, what, room.reason).c_str(), stdout);
   }
 }
@@ -75,8 +78,11 @@ void print_report(const BakeOptions& options, const BakeReport& report, bool as_
     json["maps_kept"] = report.kept_maps;
     json["kept"] = nlohmann::json::array();
     for (const RoomKept& room : report.kept) {
-      json["kept"].push_back({{"room", room.room}, {"geometry", room.geometry}, {"radiance", room.radiance},
-                              {"light_off", room.light_off}, {"reason", room.reason}});
+      json["kept"].push_back({{"room", room.room},
+                              {"geometry", room.geometry},
+                              {"radiance", room.radiance},
+                              {"light_off", room.light_off},
+                              {"reason", room.reason}});
     }
     if (report.planned) {
       json["plan_file"] = report.plan_file.string();
@@ -130,20 +136,31 @@ void run_bake(BakeArguments arguments, const CommonOptions& common) {
 void add_bake_command(CLI::App& app, CommonOptions& common) {
   CLI::App* command = app.add_subcommand("bake", "Bake a glTF scene into a probe pack");
   command->footer(
-      "States the unit and the lights it assumes, estimates time and size, then shows progress. Interrupted (Ctrl-C), it\n"
-      "keeps what is finished beside the pack; the same command goes on from there. The same scene and options give the\n"
+      "States the unit and the lights it assumes, estimates time and size, then shows progress. Interrupted (Ctrl-C), "
+      "it\n"
+      "keeps what is finished beside the pack; the same command goes on from there. The same scene and options give "
+      "the\n"
       "same bytes, whatever the number of threads. NAME.plan.png beside the pack shows floors, rooms,\n"
       "probes and the tour from above. README.md lists the glTF extensions that are read.\n\n"
-      "Rooms are those that the author named (node extras, or rooms.json beside the scene), else they are found: where the\n"
+      "Rooms are those that the author named (node extras, or rooms.json beside the scene), else they are found: where "
+      "the\n"
       "way for heads narrows to a door's width, one room ends; halls of over 150 m^2 are cut.\n\n"
-      "With --error E the pack is as small as keeps two numbers below E for eyes anywhere in walkable space: mean FLIP of\n"
-      "what a display shows at 20 pixels a degree, and the share of rays that are wrong or holes. Both are measured on\n"
-      "views that nothing was chosen by. Rooms get probes where they are needed and maps of their own sizes; a table and\n"
-      "NAME.plan.json tell what was chosen and what the next coarser choice would have cost, or why E cannot be kept.\n\n"
-      "Onto a pack that was baked with the same options, only what has changed in the scene since is baked. A room is kept\n"
-      "when nothing that its probes or their light's rays pass by has changed, and the light that arrives there by no more\n"
-      "than --light-tolerance; a table tells what was kept and why. What is kept has the bytes of a full bake, unless the\n"
-      "table says that its light changed. Probes stay on the grid of the earlier bake as long as it covers the scene. What\n"
+      "With --error E the pack is as small as keeps two numbers below E for eyes anywhere in walkable space: mean FLIP "
+      "of\n"
+      "what a display shows at 20 pixels a degree, and the share of rays that are wrong or holes. Both are measured "
+      "on\n"
+      "views that nothing was chosen by. Rooms get probes where they are needed and maps of their own sizes; a table "
+      "and\n"
+      "NAME.plan.json tell what was chosen and what the next coarser choice would have cost, or why E cannot be "
+      "kept.\n\n"
+      "Onto a pack that was baked with the same options, only what has changed in the scene since is baked. A room is "
+      "kept\n"
+      "when nothing that its probes or their light's rays pass by has changed, and the light that arrives there by no "
+      "more\n"
+      "than --light-tolerance; a table tells what was kept and why. What is kept has the bytes of a full bake, unless "
+      "the\n"
+      "table says that its light changed. Probes stay on the grid of the earlier bake as long as it covers the scene. "
+      "What\n"
       "the pack was made of is in NAME.inputs beside it; without that file, or with --all, all is baked.\n\n"
       "  probewalk bake house.glb -o house.probes\n"
       "  probewalk bake house.glb -o house.probes --error 0.05    the smallest pack that is off by no more\n"
@@ -186,9 +203,11 @@ void add_bake_command(CLI::App& app, CommonOptions& common) {
                       "Bounces of indirect light that are followed; what would come after is extrapolated")
       ->check(CLI::Range(0, 64))->capture_default_str();
   command->add_option("--seed", bake.light.seed, "Turns the sampling patterns of indirect light")->capture_default_str();
-  command->add_option("--rooms", arguments->rooms_file, "Rooms as boxes and polygons, or edits of those that are found (merge, rename, split), instead of "
-                      "rooms.json beside the scene; `probewalk info PACK --rooms` prints those that were found, and `probewalk "
-                      "info --help` tells the form");
+  command->add_option(
+      "--rooms", arguments->rooms_file,
+      "Rooms as boxes and polygons, or edits of those that are found (merge, rename, split), instead of "
+      "rooms.json beside the scene; `probewalk info PACK --rooms` prints those that were found, and `probewalk "
+      "info --help` tells the form");
   command->add_option("--scale", arguments->scale, "Metres per unit of the file, instead of the guess that is stated")
       ->check(CLI::PositiveNumber);
   command->add_flag("--recentre", bake.load.recentre, "Move the scene's middle to x = z = 0 and its lowest point to y = 0");
@@ -196,10 +215,13 @@ void add_bake_command(CLI::App& app, CommonOptions& common) {
       ->delimiter(',')->expected(3);
   command->add_option("--credits", arguments->credits_file, "Text file of credits, instead of the scene's own");
   command->add_flag("--all", bake.all, "Bake all rooms anew, whatever an earlier pack of that name has");
-  command->add_option("--light-tolerance", bake.light_tolerance,
-                      "Keep a room of an earlier pack whose light changed by no more than this share of it, all bakes since "
-                      "it was lit together; 0 keeps only what a full bake would make to the bit")
-      ->check(CLI::Range(0.0, 1.0))->capture_default_str();
+  command
+      ->add_option(
+          "--light-tolerance", bake.light_tolerance,
+          "Keep a room of an earlier pack whose light changed by no more than this share of it, all bakes since "
+          "it was lit together; 0 keeps only what a full bake would make to the bit")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
   command->add_option("--only-room", bake.only_room, "Bake this room of an existing pack anew (`probewalk info` lists rooms)");
   command->add_option("--share", arguments->share,
                       "Part K of N of the work, for several machines over one folder (tools/bake-slurm): 0/N makes the light, "

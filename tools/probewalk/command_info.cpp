@@ -125,7 +125,9 @@ json to_json(const Manifest& manifest) {
 }
 
 // A step of about a millimetre that is a round number of the scene file's own units.
-double plan_step_m(double scale) { return scale * std::pow(10.0, std::floor(std::log10(1e-3 / scale) + 1e-9)); }
+double plan_step_m(double scale) {
+  return scale * std::pow(10.0, std::floor(std::log10(1e-3 / scale) + 1e-9));
+}
 
 // As a rooms file, which is in the scene file's own units.
 void print_rooms_file(const InfoOptions& options, const Manifest& manifest) {
@@ -155,7 +157,8 @@ void print_rooms_file(const InfoOptions& options, const Manifest& manifest) {
   }
   fmt::print("{}\n", json{{"rooms", rooms}}.dump(2, ' ', false, json::error_handler_t::replace));
   if (outlined.strayed > 0) {
-    fmt::print(stderr, "note: {} of {} pieces of floor (storeys over each other in one room) would go to another room\n",
+    fmt::print(stderr,
+               "note: {} of {} pieces of floor (storeys over each other in one room) would go to another room\n",
                outlined.strayed, manifest.floor.nodes.size());
   }
 }
@@ -197,7 +200,8 @@ void print_room(const Manifest& manifest, std::size_t index) {
   for (std::size_t k = 0; k < room.levels.size(); ++k) {
     const LevelEntry& level = room.levels[k];
     fmt::print("    level {}  geometry {}\u00b2{}, radiance {}\u00b2, {} on disk, {} on the device, error {}\n", k,
-               level.geometry_size, level.quantised ? " (quantised)" : "", level.radiance_size, size_text(level.bytes_disk), device_text(level.stated_bytes(kDefaultSamples), level.bytes_device),
+               level.geometry_size, level.quantised ? " (quantised)" : "", level.radiance_size,
+               size_text(level.bytes_disk), device_text(level.stated_bytes(kDefaultSamples), level.bytes_device),
                level.error < 0.0 ? "not measured" : fmt::format("{:.3g}", level.error));
   }
 }
@@ -260,7 +264,8 @@ void run_info(const InfoOptions& options, const CommonOptions& common) {
 void add_info_command(CLI::App& app, CommonOptions& common) {
   CLI::App* command = app.add_subcommand("info", "Show what a pack holds: rooms, probes, levels, bytes, credits");
   command->footer(
-      "With --verify every byte is read and decoded; the exit code is 1 when a chunk is damaged, and each damaged chunk\n"
+      "With --verify every byte is read and decoded; the exit code is 1 when a chunk is damaged, and each damaged "
+      "chunk\n"
       "is named with its room and level. A manifest that cannot be read is exit code 3.\n\n"
       "With --rooms the rooms come out as the file that `bake --rooms` reads (or finds as rooms.json beside the\n"
       "scene), for corrections: boxes (min, max), and where boxes would not do polygons of [x, z], which then win,\n"
@@ -268,7 +273,8 @@ void add_info_command(CLI::App& app, CommonOptions& common) {
       "Or write a file that only tells what to change, with a list \"edits\" of\n"
       "  {\"merge\": [\"room-1\", \"room-3\"], \"id\": \"hall\", \"name\": \"The hall\"}\n"
       "  {\"rename\": \"room-2\", \"id\": \"kitchen\"}\n"
-      "  {\"split\": \"room-4\", \"line\": [[x, z], [x, z]], \"id\": \"nook\"}   (right of the line, seen from above)\n\n"
+      "  {\"split\": \"room-4\", \"line\": [[x, z], [x, z]], \"id\": \"nook\"}   (right of the line, seen from "
+      "above)\n\n"
       "  probewalk info house.probes --verify\n"
       "  probewalk info house.probes --rooms > rooms.json");
   auto options = std::make_shared<InfoOptions>();

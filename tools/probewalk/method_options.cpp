@@ -78,10 +78,12 @@ void add_method_options(CLI::App& command, MethodOptions& options) {
                            "With --first signed-distance: how much nearness counts beside direction"))
       ->check(CLI::Range(0.0f, 1000.0f));
   group(command.add_option("--max-tries", options.max_tries, "Probes that a ray asks at most"))->check(CLI::Range(1, 16));
-  group(command.add_option("--device-samples", options.samples,
-                           "How geometry lies in the device's memory: tiled (in fewer bits where they suffice) or float; "
-                           "answers are the same to the bit (default: tiled)"))
-      ->transform(CLI::CheckedTransformer(kSamplesNames))->option_text("NAME");
+  group(
+      command.add_option("--device-samples", options.samples,
+                         "How geometry lies in the device's memory: tiled (in fewer bits where they suffice) or float; "
+                         "answers are the same to the bit (default: tiled)"))
+      ->transform(CLI::CheckedTransformer(kSamplesNames))
+      ->option_text("NAME");
   group(command.add_option("--epsilon-rule", options.epsilon_rule,
                            "Marches: what a surface's thickness goes by: fixed, dynamic, angle"))
       ->transform(CLI::CheckedTransformer(kEpsilonNames))->option_text("NAME");

@@ -43,8 +43,10 @@ struct StillDrawer::Impl {
         views(view_count),
         store(device, pack.manifest().grid, static_cast<std::uint32_t>(pack.manifest().probe_positions_m.size()),
               {.frame_slots = kFrameSlots}),
-        baselines(choice.needs_maps() && maps != nullptr ? std::make_unique<BaselineStore>(device, *maps, choice) : nullptr),
-        picture(device, {kFormat, extent, views, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT}),
+        baselines(choice.needs_maps() && maps != nullptr ? std::make_unique<BaselineStore>(device, *maps, choice)
+                                                         : nullptr),
+        picture(device,
+                {kFormat, extent, views, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT}),
         renderer(device, store, {{extent, views, true, samples, foveation, false, {choice, baselines.get()}}, kFormat}),
         source(pack.path()),
         streamer(

@@ -21,6 +21,7 @@ constexpr std::array<char, 16> kMagic{'p', 'r', 'o', 'b', 'e', 'w', 'a', 'l', 'k
 constexpr std::size_t kHashBytes = 32;
 constexpr std::uint64_t kMostBytes = 1u << 30;
 constexpr std::uint64_t kMostCells = 1u << 26, kMostPoints = 1u << 24;
+constexpr double kLeastCell_m = 0.01, kMostCell_m = 1e7, kMostCellsOff = 1e9;
 
 // A file is: magic, hash of the rest, bytes of the rest unpacked, the rest packed.
 class Writer {
@@ -115,8 +116,12 @@ bool has_sound_sizes(const BakeInputs& inputs) {
   const glm::ivec3 dims = inputs.cells.dims;
   if (glm::any(glm::lessThan(dims, glm::ivec3(1))) || glm::any(glm::greaterThan(dims, glm::ivec3(1 << 20))))
     return false;
+  // Whole numbers of cells hold whatever lies within a scene's limits.
+  const glm::dvec3 last = glm::abs(glm::dvec3(inputs.cells.lower)) + glm::dvec3(dims);
+  if (glm::any(glm::greaterThan(last, glm::dvec3(kMostCellsOff)))) return false;
+  if (!(inputs.cells.cell_m >= kLeastCell_m && inputs.cells.cell_m <= kMostCell_m)) return false;
   const double count = double(dims.x) * dims.y * dims.z;
-  return inputs.cells.cell_m > 0.0 && count <= double(kMostCells);
+  return count <= double(kMostCells);
 }
 
 BakeInputs parse(Reader reader) {

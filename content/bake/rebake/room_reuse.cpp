@@ -120,6 +120,16 @@ class Comparison {
   std::vector<bool> same_;                           // ... its value to the bit
 };
 
+bool is_sound(const EarlierBake& earlier, const RoomReuse& reuse) {
+  const Pack& pack = earlier.pack;
+  try {
+    for (const LevelEntry& level : pack.manifest().rooms[std::size_t(reuse.earlier)].levels) pack.read_chunk(level);
+    return true;
+  } catch (const BadInput&) {
+    return false;
+  }
+}
+
 }  // namespace
 
 std::optional<EarlierBake> find_earlier_bake(const std::filesystem::path& pack, const std::string& options_hash) {
@@ -138,7 +148,14 @@ std::vector<RoomReuse> compare_rooms(const EarlierBake& earlier, const Manifest&
                                      const LightCells& light, double tolerance) {
   const Comparison comparison(earlier, manifest, scene, light);
   std::vector<RoomReuse> rooms;
-  for (const RoomEntry& room : manifest.rooms) rooms.push_back(comparison.compare(room, tolerance));
+  for (const RoomEntry& room : manifest.rooms) {
+    RoomReuse& reuse = rooms.emplace_back(comparison.compare(room, tolerance));
+    if ((reuse.keeps_geometry || reuse.keeps_radiance) && !is_sound(earlier, reuse)) {
+      reuse.keeps_geometry = reuse.keeps_radiance = false;
+      reuse.reason = "what the pack has of it is damaged";
+    }
+    if (!reuse.keeps_radiance) reuse.drift = 0.0f;
+  }
   return rooms;
 }
 
@@ -151,6 +168,28 @@ std::vector<std::uint32_t> numbers_now(const LightCells& before, const LightCell
     numbers.push_back(found == known.end() ? kNoPoint : found->second);
   }
   return numbers;
+}
+
+RoomInputs kept_inputs(const EarlierBake& earlier, const RoomReuse& reuse, const std::vector<std::uint32_t>& numbers,
+                       std::size_t points) {
+  RoomInputs kept;
+  kept.drift = reuse.drift;
+  if (reuse.earlier < 0) return kept;
+  const RoomInputs& before = earlier.inputs.rooms[std::size_t(reuse.earlier)];
+  if (reuse.keeps_geometry) {
+    kept.geometry = before.geometry;
+    kept.sees_sky = before.sees_sky;
+    kept.cut_cells = before.cut_cells;
+    kept.cells = before.cells;
+  }
+  if (reuse.keeps_radiance) {
+    kept.radiance = before.radiance;
+    kept.radiance.points = IndexSet(points);
+    before.radiance.points.for_each([&](std::size_t k) {
+      if (k < numbers.size() && numbers[k] != kNoPoint) kept.radiance.points.insert(numbers[k]);
+    });
+  }
+  return kept;
 }
 
 }  // namespace probewalk

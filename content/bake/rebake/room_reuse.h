@@ -26,13 +26,17 @@ struct RoomReuse {
   std::string reason;  // for people, why it is baked anew or may be kept
 };
 
-// rooms: of the manifest to be written, with sizes of levels but without chunks. tolerance: what radiance may be off
-// by, all re-bakes since it was baked together.
+// By room of the manifest to be written, which has sizes of levels but no chunks yet. Nothing is kept of which the
+// earlier pack's bytes are damaged. tolerance: what radiance may be off by, all re-bakes since it was baked together.
 std::vector<RoomReuse> compare_rooms(const EarlierBake& earlier, const Manifest& manifest, const SceneCells& scene,
                                      const LightCells& light, double tolerance);
 
 // By cache point of before: its number now, kNoPoint where it is gone.
 inline constexpr std::uint32_t kNoPoint = ~0u;
 std::vector<std::uint32_t> numbers_now(const LightCells& before, const LightCells& now);
+
+// What the kept maps of a room were made of. numbers: numbers_now; points: of now.
+RoomInputs kept_inputs(const EarlierBake& earlier, const RoomReuse& reuse, const std::vector<std::uint32_t>& numbers,
+                       std::size_t points);
 
 }  // namespace probewalk

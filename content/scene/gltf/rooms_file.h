@@ -7,11 +7,11 @@
 //              {"rename": "room-2", "id": "kitchen", "name": "Kitchen"},
 //              {"split": "room-4", "line": [[x, z], [x, z]], "id": "nook", "name": "Nook"}]}
 //
-// A box, or a polygon between two heights, which may also be those of a box (min, max) that is given with it. Several polygons are even-odd: apart from each other they are pieces of one
-// room, one within another is a hole. Where rooms overlap the first wins; what lies in none goes to the nearest.
-// Without "rooms" they are found. Edits come after that, one after the other, by the ids of then; a split gives what
-// lies to the right of its line, seen from above on the way from its first point to its second (x to the right, z down
-// the page), to the new room.
+// A box, or a polygon between two heights, which may also be those of a box (min, max) that is given with it. Several
+// polygons are even-odd: apart from each other they are pieces of one room, one within another is a hole. Where rooms
+// overlap the first wins; what lies in none goes to the nearest. Without "rooms" they are found. Edits come after that,
+// one after the other, by the ids of then; a split gives what lies to the right of its line, seen from above on the way
+// from its first point to its second (x to the right, z down the page), to the new room.
 #pragma once
 
 #include <filesystem>

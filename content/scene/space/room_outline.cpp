@@ -11,6 +11,8 @@
 namespace probewalk {
 namespace {
 
+// Of the plans of all rooms together. Rooms beyond that stay boxes: a pack may say anything of its floor.
+constexpr std::size_t kMostPlanColumns = std::size_t{1} << 28;
 constexpr double kFurniture_m = 1.25;  // without floor, but in the room that is nearest to it
 constexpr double kTolerances_cells[]{2.0, 1.0, 0.7, 0.0};
 
@@ -24,7 +26,7 @@ double distance_to_line_m(glm::dvec2 a, glm::dvec2 b, glm::dvec2 p) {
 // Which columns of the floor belong to one room, those under its furniture included.
 class RoomPlan {
  public:
-  RoomPlan(const FloorMap& floor, std::size_t room, const Bounds& bounds) : floor_(floor) {
+  RoomPlan(const FloorMap& floor, std::size_t room, const Bounds& bounds, std::size_t most_columns) : floor_(floor) {
     low_ = {INT32_MAX, INT32_MAX};
     high_ = {INT32_MIN, INT32_MIN};
     for (const FloorNode& node : floor.nodes) {
@@ -37,6 +39,7 @@ class RoomPlan {
     low_ = glm::min(low_, column(lower + 0.51 * floor.cell_m));
     high_ = glm::max(high_, column(upper - 0.51 * floor.cell_m));
     size_ = high_ - low_ + 1;
+    if (std::size_t(size_.x) * std::size_t(size_.y) > most_columns) return;
     owner_.assign(std::size_t(size_.x) * size_.y, kNobody);
     std::vector<glm::ivec2> front;
     for (const FloorNode& node : floor.nodes) {
@@ -62,6 +65,7 @@ class RoomPlan {
   }
 
   bool empty() const { return owner_.empty(); }
+  std::size_t columns() const { return owner_.size(); }
   // Corners of columns along the border, the room to the left.
   std::vector<std::vector<glm::ivec2>> loops() const {
     std::multimap<std::pair<int, int>, glm::ivec2> next;  // by (z, x)
@@ -98,7 +102,10 @@ class RoomPlan {
  private:
   enum : std::uint8_t { kNobody, kOwn, kForeign };
 
-  glm::ivec2 column(glm::dvec2 p) const { return glm::ivec2(glm::floor((p - floor_.origin_m) / floor_.cell_m)); }
+  glm::ivec2 column(glm::dvec2 p) const {
+    constexpr double kFar = 1 << 28;
+    return glm::ivec2(glm::clamp(glm::floor((p - floor_.origin_m) / floor_.cell_m), -kFar, kFar));
+  }
   bool holds(glm::ivec2 c) const { return c.x >= low_.x && c.y >= low_.y && c.x <= high_.x && c.y <= high_.y; }
   std::uint8_t& at(glm::ivec2 c) { return owner_[std::size_t(c.y - low_.y) * size_.x + (c.x - low_.x)]; }
   bool own(glm::ivec2 c) const {
@@ -223,8 +230,10 @@ double distance_to_outline_m(const std::vector<PlanLoop>& outline, glm::dvec2 po
 OutlinedRooms outline_rooms(const FloorMap& floor, const std::vector<RoomRegion>& rooms, double grid_m) {
   std::vector<RoomPlan> plans;
   std::vector<bool> drawn;
+  std::size_t left = kMostPlanColumns;
   for (std::size_t k = 0; k < rooms.size(); ++k) {
-    plans.emplace_back(floor, k, rooms[k].bounds);
+    plans.emplace_back(floor, k, rooms[k].bounds, left);
+    left -= plans.back().columns();
     drawn.push_back(false);
   }
   OutlinedRooms best;

@@ -109,8 +109,9 @@ int room_at(const std::vector<RoomRegion>& rooms, glm::dvec3 foot_m) {
     const glm::dvec3 outside = glm::max(glm::max(box.lower_m - air_m, air_m - box.upper_m), glm::dvec3(0.0));
     double distance = glm::length(outside);
     if (const glm::dvec2 plan_m(air_m.x, air_m.z); !rooms[r].outline.empty()) {
-      distance = outline_holds(rooms[r].outline, plan_m) ? outside.y
-                                                         : std::hypot(distance_to_outline_m(rooms[r].outline, plan_m), outside.y);
+      distance = outline_holds(rooms[r].outline, plan_m)
+                     ? outside.y
+                     : std::hypot(distance_to_outline_m(rooms[r].outline, plan_m), outside.y);
     }
     if (distance < least) {
       least = distance;

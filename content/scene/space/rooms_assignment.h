@@ -12,8 +12,8 @@ namespace probewalk {
 // The author's rooms, else one room that is the whole scene. Never empty; bounds of the latter are left to be grown.
 std::vector<RoomRegion> list_rooms(const Scene& scene);
 
-// Index of the first room whose bounds, or outline between their heights, hold the air a metre above the foot, else of the
-// nearest one.
+// Index of the first room whose bounds, or outline between their heights, hold the air a metre above the foot, else of
+// the nearest one.
 int room_at(const std::vector<RoomRegion>& rooms, glm::dvec3 foot_m);
 
 // Openings of at least 0.4 m where a head can pass from one room to another. `room` of each place of the graph, -1 =

@@ -42,7 +42,8 @@ struct Block {
 void expect_same_bits(const std::vector<float>& w, int n, const std::string& name) {
   const Block block(w, n);
   const pw_uvec2 address = host_address(block.words.data());
-  ASSERT_EQ(block.tiles.words(), least_tiled_words(static_cast<std::uint64_t>(n)) + 81 * block.tiles.of_floats) << name;
+  const auto across = static_cast<std::uint64_t>(n / kDeviceTileSide + 1);
+  ASSERT_EQ(block.tiles.words(), across * across * kDeviceTileWords + 81 * block.tiles.of_floats) << name;
   const auto stored = [&](int i, int j) {
     return bits(w[static_cast<std::size_t>(j) * static_cast<std::size_t>(n + 1) + static_cast<std::size_t>(i)]);
   };

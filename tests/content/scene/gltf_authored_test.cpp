@@ -220,7 +220,11 @@ TEST(Authored, RoomsFilesHavePolygonsAndEditsInFileUnits) {
 TEST(Authored, RefusesRoomsThatCannotBe) {
   const std::string deep = R"({"rooms":)" + std::string(100000, '[');
   const char* const cases[] = {
-      "[]", "{", R"({"rooms":{}})", R"({"rooms":[1]})", deep.c_str(),
+      "[]",
+      "{",
+      R"({"rooms":{}})",
+      R"({"rooms":[1]})",
+      deep.c_str(),
       R"({"rooms":[{"id":"../x","min":[0,0,0],"max":[1,1,1]}]})",
       R"({"rooms":[{"id":"a","min":[0,0,0],"max":[1,1,0]}]})",
       R"({"rooms":[{"id":"a","min":[0,0],"max":[1,1,1]}]})",
@@ -231,9 +235,14 @@ TEST(Authored, RefusesRoomsThatCannotBe) {
       R"({"rooms":[{"id":"a","floor":0,"ceiling":2,"polygon":[[0,0],[1,0],[1,1e300]]}]})",
       R"({"rooms":[{"id":"a","floor":2,"ceiling":0,"polygon":[[0,0],[1,0],[1,1]]}]})",
       R"({"rooms":[{"id":"a","floor":0,"ceiling":2,"polygons":[[0,0],[1,0],[1,1]]}]})",
-      R"({"edits":[{"merge":["a"]}]})", R"({"edits":[{"merge":"a"}]})", R"({"edits":[{"rename":"a"}]})", R"({"edits":[1]})",
-      R"({"edits":[{"rename":"a","split":"a","id":"b"}]})", R"({"edits":[{"split":"a"}]})",
-      R"({"edits":[{"split":"a","line":[[0,0],[0,0]]}]})", R"({"edits":[{"rename":"a","id":"../x"}]})"};
+      R"({"edits":[{"merge":["a"]}]})",
+      R"({"edits":[{"merge":"a"}]})",
+      R"({"edits":[{"rename":"a"}]})",
+      R"({"edits":[1]})",
+      R"({"edits":[{"rename":"a","split":"a","id":"b"}]})",
+      R"({"edits":[{"split":"a"}]})",
+      R"({"edits":[{"split":"a","line":[[0,0],[0,0]]}]})",
+      R"({"edits":[{"rename":"a","id":"../x"}]})"};
   for (const char* text : cases) {
     SceneLoadOptions options;
     options.rooms_file = GltfScene::write("bad-rooms.json", text);

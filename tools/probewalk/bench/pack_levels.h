@@ -17,8 +17,7 @@ std::vector<int> level_sizes(const Manifest& manifest);
 class PackLevel {
  public:
   // A room that has fewer levels shows its finest. Throws BadInput.
-  PackLevel(const Device& device, const Pack& pack, std::size_t level,
-            DeviceSamples samples = kDefaultSamples);
+  PackLevel(const Device& device, const Pack& pack, std::size_t level, DeviceSamples samples = kDefaultSamples);
 
   DeviceSamples samples() const { return samples_; }
   const ProbeSet& probes() const { return probes_; }
