@@ -20,9 +20,9 @@ struct LedgerCost {
   CostFraction cpu_time;    // of the process, a software device's threads included
 };
 
-// Walks offscreen with the pack, the method and the eyes' size of `walk`: `pairs` times a block of frames with the
-// ledger and one without, in alternating order. Off, the walk takes no stamps, the device no time stamps, and nobody
-// asks for either. Throws as walk() does.
+// Stands offscreen at the start of the pack, with the method and the size of eyes of `walk`: `pairs` times a block of
+// frames with the ledger and one without, in alternating order. Off, the walk takes no stamps, the device no time
+// stamps, and nobody asks for either. Throws as walk() does.
 LedgerCost measure_ledger_cost(const WalkOptions& walk, std::uint64_t pairs, Progress& progress);
 
 }  // namespace probewalk

@@ -41,10 +41,10 @@ std::optional<std::uint64_t> frame_limit(const WalkOptions& options, bool offscr
   return path ? frames_in(path->duration_s()) : kTourFrames;
 }
 
-WalkView view_of(const Manifest& manifest, bool offscreen, std::optional<Path> path,
+WalkView view_of(const Manifest& manifest, bool displays_own_views, std::optional<Path> path,
                  std::optional<std::uint64_t> frames) {
   if (path) return WalkView::of_path(std::move(*path));
-  if (!offscreen) return {};
+  if (displays_own_views) return {};
   return frames ? WalkView::of_tour(path_of_tour(manifest.tour), *frames)
                 : WalkView::of_path(path_of_tour(manifest.tour));
 }
@@ -149,7 +149,7 @@ void Walk::begin(std::optional<Path> path) {
   note_display();
   const bool offscreen = display_->source->kind() == "offscreen";
   books_.frames = frame_limit(options_, offscreen, path);
-  books_.view = view_of(manifest, offscreen, std::move(path), books_.frames);
+  books_.view = view_of(manifest, !offscreen || options_.stands_still, std::move(path), books_.frames);
   books_.ledger = Ledger({.warmup_frames = std::min(kWarmupFrames, books_.frames.value_or(10 * kWarmupFrames) / 10),
                           .has_deadlines = !offscreen || display_options_.offscreen_in_real_time});
   books_.info = run_info(options_, *display_);

@@ -43,6 +43,7 @@ struct WalkOptions {
   std::optional<double> exposure_ev;     // default: the pack's
   // Whether the ledger takes part in a frame; empty = in all of them. To measure what it costs.
   std::function<bool(std::uint64_t frame)> keeps_books;
+  bool stands_still = false;  // offscreen, at the pack's start instead of along its tour: frames that can be compared
   std::optional<double> ledger_cost_fraction;  // as it was measured, for the report
   std::string command;                         // the words that repeat the walk, for the report
   bool overlay = false;                        // shown from the start, where there is a window
