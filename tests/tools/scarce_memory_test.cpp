@@ -41,20 +41,33 @@ struct ScarceWalk {
   }
 };
 
-ScarceWalk walk_with(const std::string& name, const std::string& scarcity, const std::string& options) {
+std::string interrupted_after(const std::string& words) {
+  return " & walk=$!\n"
+         "while kill -0 $walk && ! grep -q '" +
+         words +
+         "' stderr; do sleep 0.1; done\n"
+         "sleep 2; kill -INT $walk; wait $walk\n";
+}
+
+// until: the walk is interrupted two seconds after it says this; empty = it ends by its options.
+ScarceWalk walk_with(const std::string& name, const std::string& scarcity, const std::string& options,
+                     const std::string& until = "") {
   ScarceWalk result;
   result.folder = fresh_folder("scarce-memory-" + name);
   write_room_pack(result.folder / "room.probes", 512);  // its finer level fits nowhere by chance
+  // A path of one pose never ends.
+  std::ofstream(result.folder / "pose.jsonl")
+      << R"({"t_s": 0, "position_m": [-1, 1.55, 1.2], "orientation_xyzw": [0, -0.2, 0, 0.98]})" << "\n";
   result.run = run_bash(result.folder, "export VK_ADD_LAYER_PATH='" PROBEWALK_TEST_VULKAN_LAYERS
                                        "'\n"
                                        "export VK_INSTANCE_LAYERS=VK_LAYER_PROBEWALK_scarce_memory\n"
                                        "export PROBEWALK_TEST_MEMORY='log=memory;" +
                                            scarcity +
                                            "'\n"
-                                           "exec '" PROBEWALK_EXECUTABLE
+                                           "'" PROBEWALK_EXECUTABLE
                                            "' walk room.probes --display offscreen --eye-size 64x48 "
                                            "--save-frames pictures --report run " +
-                                           options);
+                                           options + (until.empty() ? "" : interrupted_after(until)));
   if (std::ifstream file(result.folder / "run" / "summary.json"); file) result.summary = json::parse(file);
   std::ifstream log(result.folder / "memory");
   for (Allocation each; log >> each.bytes >> each.refused;) result.allocations.push_back(each);
@@ -86,8 +99,9 @@ TEST(ScarceMemory, WhereABlockIsTooMuchALevelMayFit) {
 }
 
 TEST(ScarceMemory, ALevelThatFindsNoneIsAskedForAgain) {
-  const ScarceWalk walk = walk_with("again", from_rooms_on() + "refuse=42", "--realtime --seconds 8");
-  ASSERT_EQ(walk.run.exit_code, 0) << walk.run.err;
+  const ScarceWalk walk = walk_with("again", from_rooms_on() + "refuse=42",
+                                    "--realtime --seconds 100 --path pose.jsonl", "loaded after all");
+  ASSERT_EQ(walk.run.exit_code, 5) << walk.run.err;
   EXPECT_EQ(walk.refused(), 42);
   EXPECT_THAT(walk.run.err, HasSubstr("VK_ERROR_OUT_OF_DEVICE_MEMORY"));
   EXPECT_THAT(walk.run.err, HasSubstr("loaded after all"));
