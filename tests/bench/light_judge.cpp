@@ -1,0 +1,176 @@
+// How far baked light is off, judged by unbiased paths that share no light sampling with it: by hand, not run by ctest.
+//   light_judge [--texels N] [--paths N] [--probes N] SCENE...
+// At places that probes see, the light that arrives as the bake has it is set beside the mean of reference paths, part
+// by part: lights and patches, which the bake samples directly; the rest, which its cache holds. A part's bias is told
+// as a share of all light, with the standard error over the places; its noise beside that of the judge.
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <map>
+#include <numbers>
+#include <random>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "bench/reference_light.h"
+#include "content/bake/direct_light.h"
+#include "content/bake/light_field.h"
+#include "content/bake/patterns.h"
+#include "content/bake/placement.h"
+#include "content/bake/surface_point.h"
+#include "content/progress.h"
+#include "content/scene/ray_scene.h"
+#include "content/scene/scene.h"
+#include "content/scene/space.h"
+
+namespace probewalk::bench {
+namespace {
+
+constexpr int kBatch = 16;      // paths of one sample of the judge's noise
+constexpr double kDark = 0.05;  // of the mean light: errors of darker places count as of this
+
+enum Part { kLights, kPatches, kDirect, kCached, kAll, kParts };
+constexpr const char* kNames[kParts] = {"punctual lights", "patches", "both: sampled directly", "cached", "all"};
+
+struct Place {
+  SurfacePoint surface;
+  double baked[kParts]{}, judged[kParts]{}, variance[kParts]{};  // luminance of what leaves; variance of the mean
+};
+
+struct Options {
+  int texels = 300, paths = 4096, probes = 4;
+};
+
+void judge(const std::filesystem::path& file, const Options& options) {
+  SilentProgress progress;
+  const Scene scene = load_scene(file);
+  const RayScene rays(scene);
+  PlacementOptions placement;
+  placement.max_probes = options.probes;
+  const Placement placed = place_probes(scene, rays, find_space(scene, rays, {}, progress), placement);
+  const LightField field(scene, rays, {}, progress);
+  const Emitters& emitters = field.direct().emitters();
+  const EmitterLight by_emitter(emitters, rays);
+  std::vector<float> lamp_radii_m;
+  for (const PunctualEmitter& emitter : emitters.lights) lamp_radii_m.push_back(emitter.lamp_radius_m);
+  const ReferenceLight reference(scene, rays, emitters.is_patch, lamp_radii_m);
+
+  std::vector<Place> places;
+  std::mt19937 pick(1);
+  for (int tried = 0; int(places.size()) < options.texels; ++tried) {
+    if (tried > 1000 * options.texels) throw std::runtime_error("the probes see hardly any surface that is lit");
+    const auto unit = [&] { return float(pick() >> 8) * (1.0f / 16777216.0f); };
+    const glm::vec3 direction = sphere_direction({unit(), unit()});
+    const glm::vec3 from(placed.sites[pick() % placed.sites.size()].position_m);
+    const SurfaceHit hit = rays.closest(from, direction);
+    if (!hit.hit) continue;
+    const SurfacePoint surface = surface_at(scene, hit, direction, 0.01f);
+    if (!surface.unlit && luminance(surface.albedo) > 0.01f) places.push_back({surface});
+  }
+  tbb::parallel_for(std::size_t(0), places.size(), [&](std::size_t k) {
+    Place& place = places[k];
+    const SurfacePoint& at = place.surface;
+    const auto leaves = [&](glm::vec3 lux) { return luminance(at.albedo * std::numbers::inv_pi_v<float> * lux); };
+    std::uint64_t cast = 0;
+    const Receiver receiver{at.position_m, at.geometric_normal, at.normal};
+    for (std::uint32_t e = 0; e < by_emitter.count(); ++e) {
+      const double value =
+          leaves(by_emitter.unshadowed(e, receiver) * by_emitter.visible_fraction(e, kPatchSamples, receiver, cast));
+      place.baked[by_emitter.is_patch(e) ? kPatches : kLights] += value;
+    }
+    place.baked[kDirect] = leaves(field.direct().irradiance(at.position_m, at.geometric_normal, at.normal, cast));
+    place.baked[kCached] = leaves(field.indirect(at.position_m, at.normal));
+    place.baked[kAll] = place.baked[kDirect] + place.baked[kCached];
+    std::mt19937 random{std::uint32_t(k) + 1};
+    const int batches = std::max(options.paths / kBatch, 2);
+    double squares[kParts]{};
+    for (int b = 0; b < batches; ++b) {
+      double mean[kParts]{};
+      for (int p = 0; p < kBatch; ++p) {
+        const ArrivingLight light = reference.path(at.position_m, at.geometric_normal, at.normal, random);
+        const double lights = leaves(light.lights), patches = leaves(light.marked);
+        const double cached = leaves(light.unmarked + light.reflected);
+        mean[kLights] += lights / kBatch;
+        mean[kPatches] += patches / kBatch;
+        mean[kDirect] += (lights + patches) / kBatch;
+        mean[kCached] += cached / kBatch;
+        mean[kAll] += (lights + patches + cached) / kBatch;
+      }
+      for (int part = 0; part < kParts; ++part) {
+        place.judged[part] += mean[part];
+        squares[part] += mean[part] * mean[part];
+      }
+    }
+    for (int part = 0; part < kParts; ++part) {
+      place.judged[part] /= batches;
+      const double spread = squares[part] / batches - place.judged[part] * place.judged[part];
+      place.variance[part] = std::max(spread, 0.0) / (batches - 1);
+    }
+  });
+
+  double all = 0.0;
+  for (const Place& place : places) all += place.judged[kAll];
+  const double n = double(places.size()), dark = kDark * all / n;
+  fmt::print("{}: {} places, {} paths each, {} patches, {} lights\n", file.string(), places.size(), options.paths,
+             emitters.patches.size(), emitters.lights.size());
+  fmt::print("  {:<24}{:>9}{:>10}{:>9}{:>13}{:>11}{:>13}\n", "shares of all light", "judged", "bias", "+-",
+             "of it judge", "RMS error", "judge's RMS");
+  for (int part = 0; part < kParts; ++part) {
+    double judged = 0.0, off = 0.0, off_squares = 0.0, own = 0.0, square = 0.0, own_square = 0.0;
+    for (const Place& place : places) {
+      const double d = place.baked[part] - place.judged[part];
+      const double scale = n * (place.judged[kAll] * place.judged[kAll] + dark * dark);
+      judged += place.judged[part], off += d, off_squares += d * d, own += place.variance[part];
+      square += d * d / scale, own_square += place.variance[part] / scale;
+    }
+    const double spread = std::sqrt(std::max(off_squares - off * off / n, 0.0) * n / (n - 1));
+    fmt::print("  {:<24}{:>9.4f}{:>+10.4f}{:>9.4f}{:>13.4f}{:>11.4f}{:>13.4f}\n", kNames[part], judged / all, off / all,
+               spread / all, std::sqrt(own) / all, std::sqrt(std::max(square - own_square, 0.0)),
+               std::sqrt(own_square));
+  }
+  std::fflush(stdout);
+}
+
+int run(const std::vector<std::string>& arguments) {
+  Options options;
+  std::vector<std::filesystem::path> scenes;
+  const std::map<std::string, int*> numbers{
+      {"--texels", &options.texels}, {"--paths", &options.paths}, {"--probes", &options.probes}};
+  for (std::size_t k = 0; k < arguments.size(); ++k) {
+    const auto number = numbers.find(arguments[k]);
+    if (number == numbers.end()) {
+      scenes.emplace_back(arguments[k]);
+      continue;
+    }
+    const std::string value = ++k < arguments.size() ? arguments[k] : "";
+    const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), *number->second);
+    if (error != std::errc() || end != value.data() + value.size() || *number->second < 1 ||
+        *number->second > 1'000'000) {
+      throw std::runtime_error(fmt::format("{} {}: is a whole number of at least 1", number->first, value));
+    }
+  }
+  if (options.texels < 2) throw std::runtime_error("--texels: at least 2, or no standard error can be told");
+  if (scenes.empty()) {
+    throw std::runtime_error("usage: light_judge [--texels N] [--paths N] [--probes N] SCENE...");
+  }
+  for (const std::filesystem::path& scene : scenes) judge(scene, options);
+  return 0;
+}
+
+}  // namespace
+}  // namespace probewalk::bench
+
+int main(int argc, char** argv) {
+  try {
+    return probewalk::bench::run({argv + 1, argv + argc});
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "light_judge: %s\n", error.what());
+    return 1;
+  }
+}
