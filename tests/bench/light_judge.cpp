@@ -1,11 +1,12 @@
 // How far baked light is off, judged by unbiased paths that share no light sampling with it: by hand, not run by ctest.
-//   light_judge [--texels N] [--paths N] [--probes N] SCENE...
+//   light_judge [--texels N] [--paths N] [--probes N] [--samples N] [--spacing-mm N] SCENE...
 // At places that probes see, the light that arrives as the bake has it is set beside the mean of reference paths, part
 // by part: lights and patches, which the bake samples directly; the rest, which its cache holds. A part's bias is told
 // as a share of all light, with the standard error over the places; its noise beside that of the judge.
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
@@ -35,8 +36,10 @@ namespace {
 constexpr int kBatch = 16;      // paths of one sample of the judge's noise
 constexpr double kDark = 0.05;  // of the mean light: errors of darker places count as of this
 
-enum Part { kLights, kPatches, kDirect, kCached, kAll, kParts };
-constexpr const char* kNames[kParts] = {"punctual lights", "patches", "both: sampled directly", "cached", "all"};
+enum Part { kLights, kPatches, kDirect, kEmitted, kReflected, kCached, kAll, kParts };
+constexpr const char* kNames[kParts] = {
+    "punctual lights", "patches", "both: sampled directly", "cached: emitted, sky", "cached: reflected",
+    "cached",          "all"};
 
 struct Place {
   SurfacePoint surface;
@@ -44,7 +47,7 @@ struct Place {
 };
 
 struct Options {
-  int texels = 300, paths = 4096, probes = 4;
+  int texels = 300, paths = 4096, probes = 4, samples = 128, spacing_mm = 250;
 };
 
 void judge(const std::filesystem::path& file, const Options& options) {
@@ -54,7 +57,12 @@ void judge(const std::filesystem::path& file, const Options& options) {
   PlacementOptions placement;
   placement.max_probes = options.probes;
   const Placement placed = place_probes(scene, rays, find_space(scene, rays, {}, progress), placement);
-  const LightField field(scene, rays, {}, progress);
+  LightOptions light_options;
+  light_options.samples = options.samples;
+  light_options.cache_spacing_m = 0.001 * options.spacing_mm;
+  const LightField field(scene, rays, light_options, progress);
+  light_options.bounces = 0;
+  const LightField unreflected(scene, rays, light_options, progress);
   const Emitters& emitters = field.direct().emitters();
   const EmitterLight by_emitter(emitters, rays);
   std::vector<float> lamp_radii_m;
@@ -86,6 +94,8 @@ void judge(const std::filesystem::path& file, const Options& options) {
     }
     place.baked[kDirect] = leaves(field.direct().irradiance(at.position_m, at.geometric_normal, at.normal, cast));
     place.baked[kCached] = leaves(field.indirect(at.position_m, at.normal));
+    place.baked[kEmitted] = leaves(unreflected.indirect(at.position_m, at.normal));
+    place.baked[kReflected] = place.baked[kCached] - place.baked[kEmitted];
     place.baked[kAll] = place.baked[kDirect] + place.baked[kCached];
     std::mt19937 random{std::uint32_t(k) + 1};
     const int batches = std::max(options.paths / kBatch, 2);
@@ -99,6 +109,8 @@ void judge(const std::filesystem::path& file, const Options& options) {
         mean[kLights] += lights / kBatch;
         mean[kPatches] += patches / kBatch;
         mean[kDirect] += (lights + patches) / kBatch;
+        mean[kEmitted] += leaves(light.unmarked) / kBatch;
+        mean[kReflected] += leaves(light.reflected) / kBatch;
         mean[kCached] += cached / kBatch;
         mean[kAll] += (lights + patches + cached) / kBatch;
       }
@@ -134,14 +146,24 @@ void judge(const std::filesystem::path& file, const Options& options) {
                spread / all, std::sqrt(own) / all, std::sqrt(std::max(square - own_square, 0.0)),
                std::sqrt(own_square));
   }
+  std::vector<double> off;
+  for (const Place& place : places) off.push_back(place.baked[kAll] - place.judged[kAll]);
+  std::sort(off.begin(), off.end(), [](double a, double b) { return std::abs(a) > std::abs(b); });
+  double worst = 0.0, rest = 0.0;
+  for (std::size_t k = 0; k < off.size(); ++k) (20 * k < off.size() ? worst : rest) += off[k] / all;
+  fmt::print("  of the bias of all: {:+.4f} by the twentieth of places that is off most, {:+.4f} by the rest\n", worst,
+             rest);
   std::fflush(stdout);
 }
 
 int run(const std::vector<std::string>& arguments) {
   Options options;
   std::vector<std::filesystem::path> scenes;
-  const std::map<std::string, int*> numbers{
-      {"--texels", &options.texels}, {"--paths", &options.paths}, {"--probes", &options.probes}};
+  const std::map<std::string, int*> numbers{{"--texels", &options.texels},
+                                            {"--paths", &options.paths},
+                                            {"--probes", &options.probes},
+                                            {"--samples", &options.samples},
+                                            {"--spacing-mm", &options.spacing_mm}};
   for (std::size_t k = 0; k < arguments.size(); ++k) {
     const auto number = numbers.find(arguments[k]);
     if (number == numbers.end()) {
@@ -157,7 +179,8 @@ int run(const std::vector<std::string>& arguments) {
   }
   if (options.texels < 2) throw std::runtime_error("--texels: at least 2, or no standard error can be told");
   if (scenes.empty()) {
-    throw std::runtime_error("usage: light_judge [--texels N] [--paths N] [--probes N] SCENE...");
+    throw std::runtime_error(
+        "usage: light_judge [--texels N] [--paths N] [--probes N] [--samples N] [--spacing-mm N] SCENE...");
   }
   for (const std::filesystem::path& scene : scenes) judge(scene, options);
   return 0;
