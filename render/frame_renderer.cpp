@@ -220,7 +220,7 @@ struct FrameRenderer::Impl {
   std::uint64_t side_work = 0;  // of the last one beside a frame
   std::uint64_t next_frame = 1;
   std::uint64_t bytes_copied = 0;
-  std::chrono::nanoseconds blocked{0};  // of the last record
+  std::chrono::nanoseconds blocked{0}, in_store{0};  // of the last record
   FrameTarget target;
   bool is_recorded = false, is_written = false, is_timed = true;
   std::deque<FrameGpuTimes> times;
@@ -315,7 +315,9 @@ void FrameRenderer::record(const FrameTarget& target, const Guides& guides) {
 
   const VkCommandBuffer upload = slot.commands[kUploadCommands];
   begin_commands(upload);
+  const auto before_store = std::chrono::steady_clock::now();
   const StoreWork work = impl.store.begin_frame(upload, impl.slot_index(), impl.next_frame, impl.completed_frame());
+  impl.in_store = std::chrono::steady_clock::now() - before_store;
   check(vkEndCommandBuffer(upload), "vkEndCommandBuffer");
   impl.bytes_copied = work.copied_bytes;
   // At once: copies and builds must happen even when the frame is given up before its submit.
@@ -409,6 +411,10 @@ bool FrameRenderer::submit_beside(SideView& side, const ViewConstants& view, con
   // The frame's probes stay until this is done, too.
   impl.side_work = impl.slots[last].last_work = ++impl.work;
   return true;
+}
+
+std::int64_t FrameRenderer::streaming_ns() const {
+  return impl_->in_store.count();
 }
 
 std::int64_t FrameRenderer::blocked_ns() const {

@@ -85,6 +85,8 @@ class FrameRenderer {
 
   // How long the last record waited for the device.
   std::int64_t blocked_ns() const;
+  // What the last record() spent on probes that arrive, move and go: copies, builds, the table, and the store's lock.
+  std::int64_t streaming_ns() const;
   // Bytes that the recorded frame copies to the device.
   std::uint64_t bytes_copied() const;
   // Times of the oldest finished frame that was timed and has not been taken yet, if any. Does not block. Times not

@@ -195,6 +195,7 @@ std::vector<ViewPose> WalkLeg::draw(const FrameTiming& timing, FrameRecord& reco
     renderer_.show_lookups(books_.shows_lookups);
     renderer_.record(target, guides());
     record.blocked_ns += renderer_.blocked_ns();
+    record.streaming_ns += renderer_.streaming_ns();
   });
   if (target.image == VK_NULL_HANDLE) return {};
   if (auto meshes = source_.take_hidden_meshes()) renderer_.hide(std::move(*meshes));
@@ -204,6 +205,7 @@ std::vector<ViewPose> WalkLeg::draw(const FrameTiming& timing, FrameRecord& reco
     write(views, target.extent);
     renderer_.submit();
     renderer_.record(target, guides());
+    record.streaming_ns += renderer_.streaming_ns();
   }
 
   record.locate_late = stamped([&] {

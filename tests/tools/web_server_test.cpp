@@ -161,6 +161,20 @@ TEST_F(WebServer, GivesThePicturesOfTheFolder) {
   EXPECT_EQ(count(walked.run.err, "http"), 0u) << "nothing to say: " << walked.run.err;
 }
 
+// A site can be planned before its pack is here: a simulation reads nothing but the list of rooms.
+TEST_F(WebServer, IsSimulatedFromItsListOfRooms) {
+  const fs::path dir = fresh_folder("web-server-simulated");
+  const auto simulate = [&](const std::string& pack) {
+    const RunResult run = run_probewalk(dir, {"simulate", pack, "--seconds", "5", "--quiet", "--json"});
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    json result = json::parse(run.out, nullptr, false);
+    return result.is_object() ? result["rooms"] : json();
+  };
+  EXPECT_EQ(simulate(server_->url("/sound")), simulate(pack_.string()));
+  EXPECT_EQ(simulate(pack_.string()), manifest_.rooms.size());
+  EXPECT_EQ(run_probewalk(dir, {"simulate", server_->url("/nowhere")}).exit_code, 3);
+}
+
 TEST_F(WebServer, IsAskedForAChunkOnce) {
   const fs::path dir = fresh_folder("web-server-cached");
   const std::vector<std::string> words = command(dir, server_->url("/sound"), {});

@@ -359,7 +359,8 @@ TEST(WalkStalls, AreFoundInTheirStageAndNowhereElse) {
     std::printf("  %-14s %6.2f ms   %6.2f ms   %6.2f; %6.2f, %6.2f ms %6zu of %zu   %s\n", stage.c_str(),
                 ms(median(injected)), ms(median(found)), ms(median(wrong)), ms(std::ranges::min(wrong)),
                 ms(std::ranges::max(wrong)), named, found.size(), cause.c_str());
-    EXPECT_NEAR(ms(median(wrong)), 0.0, tolerance_ms(stage)) << stage;
+    // Other work on the machine only adds: the lower quartile tells what the ledger itself is wrong by.
+    EXPECT_NEAR(ms(at_rank(wrong, 0.25)), 0.0, tolerance_ms(stage)) << stage;
     EXPECT_GE(ms(std::ranges::min(injected)), injected_ms);
     EXPECT_LT(ms(median(elsewhere)), kTolerance_ms + 2.0 * noise_ms) << stage;
     EXPECT_GE(named + 1, found.size()) << stage;  // all, but for one that other work on the machine got between

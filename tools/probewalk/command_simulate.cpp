@@ -7,7 +7,7 @@
 
 #include "content/error.h"
 #include "content/pack/file_io.h"
-#include "content/pack/pack_io.h"
+#include "content/stream/open_pack.h"
 #include "content/stream/simulated_site.h"
 #include "tools/probewalk/commands.h"
 #include "tools/probewalk/simulate/page.h"
@@ -58,7 +58,8 @@ std::vector<SimulatedWalk> chosen_walks(const SimulateArguments& arguments, cons
 }
 
 void run_simulate(const SimulateArguments& arguments, const CommonOptions& common) {
-  const Pack pack = Pack::open(arguments.pack);
+  const std::unique_ptr<Progress> progress = make_progress(common);
+  const Pack pack = open_pack(arguments.pack, [&] { return progress->cancelled(); });
   Manifest manifest = pack.manifest();
   if (arguments.rooms > 0) {
     bool has_levels = false;
@@ -76,7 +77,6 @@ void run_simulate(const SimulateArguments& arguments, const CommonOptions& commo
   if (arguments.budget_mib) options.residency.budget_bytes = *arguments.budget_mib * kMiB;
   const std::vector<SimulatedWalk> walks = chosen_walks(arguments, manifest);
 
-  const std::unique_ptr<Progress> progress = make_progress(common);
   const std::string budget = arguments.budget_mib ? fmt::format("{} MiB", *arguments.budget_mib) : "unlimited";
   const std::string title =
       fmt::format("{} · {} rooms, {:.0f} MiB with all levels on the device · budget {} · {}, {} latency, {} failing",
@@ -139,7 +139,9 @@ void add_simulate_command(CLI::App& app, CommonOptions& common) {
   CLI::App* command =
       app.add_subcommand("simulate", "Stream a pack without a device: policy, source and walk as numbers");
   auto arguments = std::make_shared<SimulateArguments>();
-  command->add_option("PACK", arguments->pack, "The pack (a folder NAME.probes); only its list of rooms is read")
+  command
+      ->add_option("PACK", arguments->pack,
+                   "The pack (a folder NAME.probes, or its http(s) address); only its list of rooms is read")
       ->required();
   command->add_option("--source", arguments->source, "What the source delivers in all: 50MB/s, 20Mbit/s")
       ->capture_default_str();

@@ -251,7 +251,7 @@ void add_walk_command(CLI::App& app, CommonOptions& common) {
       ->check(CLI::IsMember({1, 2, 4}))
       ->capture_default_str();
   add_foveation_option(*command, walk_options.foveation);
-  command->add_option("--device-budget", arguments->budget_mib, "Device memory for probes, MiB (default: unlimited)")
+  command->add_option("--device-budget", arguments->budget_mib, "Device memory for probes, MiB (default: what the device has free)")
       ->check(CLI::Range(1ull, 1ull << 24));
   command->add_option("--cache", arguments->cache,
                       "Where chunks of a pack on a web server are kept (default: the user's cache)");

@@ -58,7 +58,7 @@ struct FrameRecord {
   std::int32_t room = -1;
   std::int32_t level_shown = -1;
   std::int32_t level_wanted = -1;
-  std::int64_t streaming_ns = 0;  // time the frame thread spent in or blocked on streaming
+  std::int64_t streaming_ns = 0;  // the frame thread in or blocked on streaming; some of it inside of `record`
   std::uint64_t device_bytes = 0;
   double eye_scale = 1.0;  // of both sides of what was drawn, against the display's own size
   // Mirror.

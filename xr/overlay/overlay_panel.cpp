@@ -168,7 +168,7 @@ void show_streaming(const OverlayStatus& status) {
     ImGui::ProgressBar(static_cast<float>(std::min(resident / budget, 1.0)), {-1.0f, 0.0f},
                        fmt::format("{:.1f} of {:.0f} MiB resident", resident / kMiB, budget / kMiB).c_str());
   } else {
-    text(fmt::format("{:.1f} MiB resident, no budget", resident / kMiB));
+    text(fmt::format("{:.1f} MiB resident, no budget stated", resident / kMiB));
   }
   text(fmt::format("queue: {} levels, {:.1f} MiB in flight", status.queue_depth,
                    static_cast<double>(status.bytes_in_flight) / kMiB));
