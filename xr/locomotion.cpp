@@ -38,7 +38,10 @@ void Locomotion::place(const Pose& anchor, const HeadPose& head, const RigFloor&
   // The highest floor below the eyes: a wearer may be tall, or crouch.
   const std::int32_t index = floor_.find(anchor.position_m - glm::dvec3(0, kStep_m + 0.1, 0));
   if (index >= 0) foot_m.y = floor_.nodes[static_cast<std::size_t>(index)].floor_m;
+  const glm::dvec3 home_m = home_m_;
   stand_over(head, foot_m);
+  // Whose space changes while they lean into a wall belong on the side they came from.
+  if (placed_ && !can_stand(floor_, foot_m, 0.0)) home_m_ = home_m;
   placed_ = true;
 }
 

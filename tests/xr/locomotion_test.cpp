@@ -322,6 +322,29 @@ TEST(Locomotion, RecentresToFreeFloorWhereverTheWearerHasGot) {
   EXPECT_TRUE(can_stand(floor, {walled.eye().position_m.x, 0, walled.eye().position_m.z}));
 }
 
+TEST(Locomotion, RecentresToTheSideOneCameFromThoughTheSpaceChangedInTheWall) {
+  const FloorMap floor = make_floor({4, 4}, two_cells);
+  for (const double side : {-1.0, 1.0}) {
+    Locomotion locomotion(floor, {});
+    const HeadPose middle{{0, 1.6, 0}, 0.0};
+    locomotion.place(eye_at(2, 2 + side), middle, {});
+    const HeadPose leaning{{0, 1.6, 0.07 - side}, 0.0};  // the wall is there
+    locomotion.advance(leaning, {}, 0.01);
+    glm::dvec3 at = locomotion.rig().world_from_rig(leaning.position_m);
+    ASSERT_FALSE(can_stand(floor, {at.x, 0, at.z}, 0.0)) << "in the wall";
+    // The runtime's own recentring: the same head, told from elsewhere.
+    const HeadPose moved{{1, 1.6, 1}, 0.0};
+    locomotion.place(locomotion.anchor(leaning), moved, {});
+    MoveInput menu;
+    menu.recentre = true;
+    locomotion.advance(moved, menu, 0.01);
+    for (int i = 0; i < 60; ++i) locomotion.advance(moved, {}, 0.01);
+    at = locomotion.rig().world_from_rig(moved.position_m);
+    EXPECT_TRUE(can_stand(floor, {at.x, 0, at.z}));
+    EXPECT_GT(side * (at.z - 2.0), 0.0);
+  }
+}
+
 TEST(Locomotion, PutsSeatedEyesAtTheStatedHeightAtRestAndAtRecentring) {
   const FloorMap floor = make_floor({4, 4}, [](double, double) { return 2.0; });
   for (const double eye_height_m : {1.2, 1.6}) {
