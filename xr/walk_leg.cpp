@@ -306,6 +306,7 @@ void WalkLeg::finish() {
   StreamingFacts& all = books_.info.streaming;
   all.rooms_loaded += facts.rooms_loaded;
   all.device_budget_bytes = facts.device_budget_bytes;
+  all.device_free_bytes = facts.device_free_bytes;
   all.need_to_resident_ns.insert(all.need_to_resident_ns.end(), facts.need_to_resident_ns.begin(),
                                  facts.need_to_resident_ns.end());
   all.loads.insert(all.loads.end(), facts.loads.begin(), facts.loads.end());

@@ -53,13 +53,13 @@ ProbeStoreOptions store_options(const WalkRoomsOptions& options, const Manifest&
 }
 
 StreamerOptions streamer_options(const WalkRoomsOptions& options, const Manifest& manifest, const Device& device,
-                                 const ChunkSource& source) {
+                                 std::uint64_t free_bytes, const ChunkSource& source) {
   StreamerOptions streamer;
   if (options.budget_bytes != kUnlimitedBudget) {
     streamer.residency.budget_bytes = options.budget_bytes;
     streamer.residency.usable_share = usable_share(manifest, options.budget_bytes, options.samples);
   } else {
-    streamer.residency.budget_bytes = device.free_bytes();
+    streamer.residency.budget_bytes = free_bytes;
   }
   // Threads that wait for a far source do not compute.
   streamer.loader.threads = std::max(options.threads, source.parallel_reads());
@@ -108,6 +108,7 @@ WalkRooms::WalkRooms(const Pack& pack, const Device& device, const WalkRoomsOpti
     : pack_(pack),
       progress_(progress),
       options_(options),
+      free_bytes_(device.free_bytes()),
       source_(options.open_chunks ? options.open_chunks(pack.path().string(), options.cache)
                                   : open_source(pack.path().string(), options.cache)),
       store_(device, pack.manifest().grid, static_cast<std::uint32_t>(pack.manifest().probe_positions_m.size()),
@@ -116,7 +117,7 @@ WalkRooms::WalkRooms(const Pack& pack, const Device& device, const WalkRoomsOpti
       streamer_(
           pack.manifest(), *source_, [this](LoadedLevel&& loaded) { deliver(std::move(loaded)); },
           [this](LevelKey key) { store_.evict(key.room, key.level); },
-          streamer_options(options, pack.manifest(), device, *source_)) {}
+          streamer_options(options, pack.manifest(), device, free_bytes_, *source_)) {}
 
 // On a loader thread.
 void WalkRooms::deliver(LoadedLevel&& loaded) {
@@ -212,7 +213,9 @@ StreamingFacts WalkRooms::facts() const {
   const StreamerStatistics& statistics = streamer_.statistics();
   StreamingFacts facts;
   facts.rooms_loaded = statistics.rooms_loaded;
-  facts.device_budget_bytes = options_.budget_bytes == kUnlimitedBudget ? 0 : options_.budget_bytes;
+  const bool is_stated = options_.budget_bytes != kUnlimitedBudget;
+  facts.device_budget_bytes = is_stated ? options_.budget_bytes : 0;
+  facts.device_free_bytes = is_stated ? 0 : free_bytes_;
   facts.need_to_resident_ns = statistics.need_to_resident_ns;
   for (const LoadResult& load : streamer_.loads()) {
     facts.loads.push_back({pack_.manifest().rooms[load.key.room].id, load.key.level, load.thread, end_of(load),

@@ -75,6 +75,7 @@ class WalkRooms {
   const Pack& pack_;
   Progress& progress_;
   WalkRoomsOptions options_;
+  std::uint64_t free_bytes_;  // on the device before anything was loaded
   std::unique_ptr<ChunkSource> source_;
   ProbeStore store_;
   FreeAir free_air_;

@@ -35,7 +35,8 @@ class Chooser {
     for (std::size_t k = 1; k < rooms_.size(); ++k) {
       if (!rooms_[k].is_kept) continue;
       const int shown = book_.shown(rooms_[k].room);
-      if (shown > static_cast<int>(level_[k]) && fits(k, static_cast<std::uint32_t>(shown))) take(k, static_cast<std::uint32_t>(shown));
+      if (shown > static_cast<int>(level_[k]) && fits(k, static_cast<std::uint32_t>(shown)))
+        take(k, static_cast<std::uint32_t>(shown));
     }
   }
 
@@ -63,7 +64,13 @@ class Chooser {
   };
 
   std::uint64_t bytes(std::size_t k, std::uint32_t level) const {
-    return level == 0 ? 0 : book_.bytes({rooms_[k].room, level});
+    if (level == 0) return 0;
+    const std::uint64_t own = book_.bytes({rooms_[k].room, level});
+    if (k == 0 || rooms_[k].is_next || !rooms_[k].is_kept ||
+        book_.status({rooms_[k].room, level}) == LevelStatus::kResident)
+      return own;
+    const int shown = book_.shown(rooms_[k].room);
+    return shown > 0 ? own + book_.bytes({rooms_[k].room, static_cast<std::uint32_t>(shown)}) : own;
   }
 
   double gain(std::size_t k, std::uint32_t level) const {

@@ -13,7 +13,7 @@ struct RoomWorth {
   std::uint32_t room = 0;
   double weight = 0.0;   // of an octave of its detail
   bool is_fine = false;  // worth more than its coarsest level
-  bool is_kept = false;  // what it shows stays before anything else is added
+  bool is_kept = false;  // what it shows stays before anything else is added, and until another level has come in for it
   bool is_next = false;  // entered soon: has its finest level that fits, whatever the others beside the first would do with it
 };
 

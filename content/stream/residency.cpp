@@ -15,18 +15,17 @@ namespace {
 
 // The building counts as small when its coarse levels take at most this share of the budget.
 constexpr std::uint64_t kSmallShare = 4;
-constexpr double kMostSpeed_m_s = 5.0;     // a teleport's velocity predicts nothing
-constexpr double kAimDelay_s = 0.5;        // from aiming to being there
-constexpr double kSoon_s = 1.5;            // a room that is entered so soon is the next one
-constexpr double kUnseenWeight = 0.5;      // of a room that the walker is about to enter, against the one around them
-constexpr double kViewWeight = 0.5;        // of a room that fills the view
-constexpr double kBehindWeight = 0.25;     // of one that would, if the head turned
-constexpr std::uint32_t kFillRooms = 16;   // looked at in one frame for the rest of a small building
+constexpr double kMostSpeed_m_s = 5.0;    // a teleport's velocity predicts nothing
+constexpr double kAimDelay_s = 0.5;       // from aiming to being there
+constexpr double kSoon_s = 1.5;           // a room that is entered so soon is the next one
+constexpr double kUnseenWeight = 0.5;     // of a room that the walker is about to enter, against the one around them
+constexpr double kViewWeight = 0.5;       // of a room that fills the view
+constexpr double kBehindWeight = 0.25;    // of one that would, if the head turned
+constexpr std::uint32_t kFillRooms = 16;  // looked at in one frame for the rest of a small building
 
 ResidencyOptions usable(ResidencyOptions options) {
   if (options.usable_share < 1.0 && options.budget_bytes != kUnlimitedBudget) {
-    options.budget_bytes =
-        static_cast<std::uint64_t>(options.usable_share * static_cast<double>(options.budget_bytes));
+    options.budget_bytes = static_cast<std::uint64_t>(options.usable_share * static_cast<double>(options.budget_bytes));
   }
   return options;
 }
@@ -55,9 +54,10 @@ Residency::Residency(const Manifest& manifest, const ResidencyOptions& options)
     const auto least = static_cast<std::uint64_t>(
         std::ceil(static_cast<double>(minimum_budget(manifest, options)) / options.usable_share));
     constexpr std::uint64_t kMiB = 1 << 20;
-    throw BadUsage(fmt::format("a device budget of {:.1f} MiB is too small for this pack; the smallest that works is "
-                               "--device-budget {}",
-                               static_cast<double>(options.budget_bytes) / kMiB, (least + kMiB - 1) / kMiB));
+    throw BadUsage(
+        fmt::format("a device budget of {:.1f} MiB is too small for this pack; the smallest that works is "
+                    "--device-budget {}",
+                    static_cast<double>(options.budget_bytes) / kMiB, (least + kMiB - 1) / kMiB));
   }
 }
 
@@ -77,13 +77,17 @@ std::vector<Residency::Candidate> Residency::candidates(const Walker& walker) {
                    .fine = reach.portals <= options_.fine_portals});
   }
   for (const RoomGraph::Seen& seen : graph_.seen(room, walker.head_m, walker.look)) {
-    all.push_back({.room = seen.room, .portals = seen.portals, .share = seen.share, .in_view = seen.in_view, .fine = true});
+    all.push_back(
+        {.room = seen.room, .portals = seen.portals, .share = seen.share, .in_view = seen.in_view, .fine = true});
   }
   if (walker.aim_m) {
     // No must: the smallest budget holds the walker's surroundings only.
     const std::uint32_t target = graph_.room_of(*walker.aim_m, -1, 0.0);
     for (const RoomGraph::Reach& reach : graph_.reach(target, *walker.aim_m, options_.fine_portals)) {
-      all.push_back({.room = reach.room, .arrival_s = reach.arrival_s + kAimDelay_s, .fine = reach.portals == 0});
+      all.push_back({.room = reach.room,
+                     .arrival_s = reach.arrival_s + kAimDelay_s,
+                     .fine = reach.portals == 0,
+                     .aimed = reach.portals == 0});
     }
   }
 
@@ -100,6 +104,7 @@ std::vector<Residency::Candidate> Residency::candidates(const Walker& walker) {
     merged.share = std::max(merged.share, c.share);
     merged.in_view = merged.in_view || c.in_view;
     merged.fine = merged.fine || c.fine;
+    merged.aimed = merged.aimed || c.aimed;
   }
   // On the doorstep the room stays the old one for a while: the one that the head is in is as good as entered.
   const std::uint32_t entered = graph_.room_of(walker.head_m, -1, 0.0);
@@ -146,10 +151,19 @@ std::vector<LevelKey> Residency::want(const std::vector<Candidate>& order, const
     }
     kept += finest;
   }
+  const auto take_far = [&](bool is_next) {
+    for (const Candidate& c : order) {
+      if (c.near || (c.share > 0.0 || c.aimed) != is_next || book.levels(c.room) == 0) continue;
+      if (all_coarse_ || left >= kept + book.bytes({c.room, 0})) take_coarse(c);
+    }
+  };
+  take_far(true);
+  // Nor do those beyond a teleport's target of what is shown in view.
   for (const Candidate& c : order) {
-    if (c.near || book.levels(c.room) == 0) continue;
-    if (all_coarse_ || left >= kept + book.bytes({c.room, 0})) take_coarse(c);
+    const int shown = c.in_view && c.room != order.front().room && !c.next ? book.shown(c.room) : 0;
+    if (shown > 0) kept += book.bytes({c.room, static_cast<std::uint32_t>(shown)});
   }
+  take_far(false);
 
   std::vector<RoomWorth> rooms;
   for (const Candidate& c : order) rooms.push_back({c.room, c.weight, c.fine, c.in_view, c.next});
@@ -163,8 +177,9 @@ std::vector<LevelKey> Residency::want(const std::vector<Candidate>& order, const
     const double bytes = static_cast<double>(book.bytes_disk(key)) + 1.0;
     fine.push_back({k == 0 ? INFINITY : order[k].weight * gain / bytes, key});
   }
-  std::sort(fine.begin(), fine.end(),
-            [](const auto& a, const auto& b) { return std::tuple(-a.first, a.second) < std::tuple(-b.first, b.second); });
+  std::sort(fine.begin(), fine.end(), [](const auto& a, const auto& b) {
+    return std::tuple(-a.first, a.second) < std::tuple(-b.first, b.second);
+  });
   for (const auto& [urgency, key] : fine) wanted.push_back(key);
   return wanted;
 }
@@ -199,6 +214,9 @@ ResidencyDecision Residency::decide(const Walker& walker, const LevelBook& book,
   }
   const std::vector<Candidate> order = candidates(walker);
   decision.room = static_cast<std::uint32_t>(room_);
+  for (const Candidate& c : order) {
+    if (c.in_view) decision.in_view.push_back(c.room);
+  }
   decision.wanted = want(order, book);
 
   planner_.plan(decision, book, retired_bytes, all_coarse_);

@@ -1,14 +1,15 @@
 // Which rooms should be on the device, and at which level: the product's policy. Rules:
-//  - the coarsest level of every room within three portals of the walker's, and of every room in sight, is always wanted,
-//    so that no room is black (beyond three portals only where the walker's own room and the next lose nothing by it); of all rooms
-//    where the building is small;
+//  - the coarsest level of every room within three portals of the walker's, and of every room in sight, is always
+//  wanted,
+//    so that no room is black (beyond three portals only where the walker's own room and the next lose nothing by it);
+//    of all rooms where the building is small;
 //  - the rest of the budget goes to finer levels by benefit per byte: octaves of detail, times how much of the view the
 //    room fills or how soon the walker may be there, over the bytes that it takes. The walker's own room is weighed
 //    against all others together, so that its size does not rob it of its detail;
 //  - what is there has a bonus over what is not, so that a walker who stands in a doorway makes nothing come and go;
-//  - what is wanted is never evicted, and a level in view gives way to nothing but the walker's own room. What is not
-//    wanted goes only to make space, what was wanted longest ago first: a walker who turns back finds the rooms still
-//    there;
+//  - what is wanted is never evicted, and a level in view gives way to nothing but the walker's own room and the one
+//    entered next; a finer one that is wanted for it comes in before it goes. What is not wanted goes only to make
+//    space, what was wanted longest ago first: a walker who turns back finds the rooms still there;
 //  - resident, loading and not yet freed bytes together never exceed the budget. What a level takes is what the pack
 //    states, kept within what maps of its size can take, until it has been decoded and is known.
 // What a decision costs depends on the rooms around the walker, not on how many the building has.
@@ -50,12 +51,13 @@ class Residency final : public StreamingPolicy {
     std::uint32_t room = 0;
     std::uint32_t portals = ~std::uint32_t{0};  // from the walker's room, where that is known
     double arrival_s = 1e9;
-    double share = 0.0;   // of all directions; 0 = out of sight
+    double share = 0.0;  // of all directions; 0 = out of sight
     bool in_view = false;
     double weight = 0.0;  // of an octave of its detail
     bool near = false;    // its coarsest level is a must
     bool fine = false;    // near enough, or in sight, for more
     bool next = false;    // the one that is entered soonest, if that is soon
+    bool aimed = false;   // a teleport would lead there
   };
   std::vector<Candidate> candidates(const Walker& walker);
   std::vector<LevelKey> want(const std::vector<Candidate>& order, const LevelBook& book) const;
@@ -64,9 +66,9 @@ class Residency final : public StreamingPolicy {
   RoomGraph graph_;
   ResidencyOptions options_;  // with the usable bytes for the budget
   ResidencyPlanner planner_;
-  std::int64_t room_ = -1;      // the walker's at the last decision
-  bool all_coarse_ = false;     // every room's coarsest level is kept, wherever the walker is
-  std::uint32_t next_fill_ = 0; // room that is looked at next for that
+  std::int64_t room_ = -1;       // the walker's at the last decision
+  bool all_coarse_ = false;      // every room's coarsest level is kept, wherever the walker is
+  std::uint32_t next_fill_ = 0;  // room that is looked at next for that
 };
 
 }  // namespace probewalk

@@ -182,7 +182,7 @@ WalkViews::WalkViews(const RoomGraph& graph, const SimulatedWalk& walk) {
   for (const WalkStep& step : walk.steps) {
     first_.push_back(seen_.size());
     room = graph.room_of(step.head_m, room, 0.05);
-    const auto seen = graph.seen(static_cast<std::uint32_t>(room), step.head_m);
+    const auto seen = graph.seen(static_cast<std::uint32_t>(room), step.head_m, step.look);
     seen_.insert(seen_.end(), seen.begin(), seen.end());
   }
   first_.push_back(seen_.size());

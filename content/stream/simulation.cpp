@@ -50,7 +50,7 @@ class Simulation {
     quick.latency_s = 0.0;
     source_ = SimulatedSource(quick);
     for (double t = 0.0; t < kSettleMost_s; t += step_s) {
-      if (advance(step_s, false).settled && book_.loading() == 0) break;
+      if (advance(step_s, false, {}).settled && book_.loading() == 0) break;
     }
     policy_ = own;
     source_ = SimulatedSource(options_.source);
@@ -67,7 +67,7 @@ class Simulation {
     walker_.look = step.look;
     walker_.aim_m = step.aim_m;
     is_first_ = false;
-    const ResidencyDecision decision = advance(step_s, true);
+    const ResidencyDecision decision = advance(step_s, true, views);
     judge(decision, views);
   }
 
@@ -78,7 +78,7 @@ class Simulation {
   }
 
  private:
-  ResidencyDecision advance(double step_s, bool with_retries) {
+  ResidencyDecision advance(double step_s, bool with_retries, std::span<const RoomGraph::Seen> views) {
     t_s_ += step_s;
     take_arrivals(step_s);
     for (auto failed = failed_.begin(); failed != failed_.end();) {
@@ -96,7 +96,7 @@ class Simulation {
     const auto before = std::chrono::steady_clock::now();
     ResidencyDecision decision = policy_->decide(walker_, book_, retired_bytes_);
     result_.decide_ns.push_back((std::chrono::steady_clock::now() - before).count());
-    carry_out(decision);
+    carry_out(decision, views);
     note_wants(decision);
     ++steps_done_;
     const std::uint64_t held = book_.held_bytes() + retired_bytes_;
@@ -119,9 +119,14 @@ class Simulation {
     }
   }
 
-  void carry_out(const ResidencyDecision& decision) {
+  void carry_out(const ResidencyDecision& decision, std::span<const RoomGraph::Seen> views) {
     for (const LevelKey& key : decision.evictions) {
+      const int shown = book_.shown(key.room);
       book_.set(key, LevelStatus::kAbsent);
+      if (book_.shown(key.room) < shown && is_in_view(key.room, views)) {
+        ++result_.evictions_in_view;
+        if (book_.shown(key.room) < 0) ++result_.evictions_to_nothing_in_view;
+      }
       retired_.push_back({steps_done_ + options_.retire_steps, book_.bytes(key)});
       retired_bytes_ += book_.bytes(key);
     }
@@ -136,6 +141,10 @@ class Simulation {
     result_.evictions += decision.evictions.size();
     result_.cancellations += decision.cancellations.size();
     result_.loads += decision.loads.size();
+  }
+
+  static bool is_in_view(std::uint32_t room, std::span<const RoomGraph::Seen> views) {
+    return std::ranges::any_of(views, [&](const RoomGraph::Seen& s) { return s.room == room && s.in_view; });
   }
 
   void note_wants(const ResidencyDecision& decision) {
@@ -159,6 +168,9 @@ class Simulation {
     ++result_.steps;
     result_.missing_octaves += missing;
     if (book_.levels(room) > 0 && shown < 0) ++result_.hole_steps;
+    result_.dark_view_steps += std::ranges::any_of(views, [&](const RoomGraph::Seen& s) {
+      return s.in_view && book_.levels(s.room) > 0 && book_.shown(s.room) < 0;
+    });
     coarse_run_ = shown < wanted ? coarse_run_ + 1 : 0;
     if (coarse_run_ > 0) ++result_.coarse_steps;
     result_.coarse_run_max = std::max(result_.coarse_run_max, coarse_run_);

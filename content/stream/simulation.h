@@ -39,12 +39,15 @@ struct SimulationResult {
   // with nothing to show lacks kHoleOctaves more than at its coarsest.
   double missing_octaves = 0.0;
   std::size_t hole_steps = 0;    // the walker's room had nothing to show
+  std::size_t dark_view_steps = 0;  // some room in view had nothing to show
   std::size_t coarse_steps = 0;  // it showed less than the finest level that the policy wanted then
   std::size_t coarse_run_max = 0;
   std::size_t over_budget_steps = 0;  // must be 0
   std::uint64_t held_bytes_max = 0;
   double bytes_moved = 0.0;
   std::size_t loads = 0, evictions = 0, cancellations = 0, failures = 0;
+  // Of the evictions: those that made a room in view coarser, and those that left one in view with nothing to show.
+  std::size_t evictions_in_view = 0, evictions_to_nothing_in_view = 0;
   std::vector<double> need_to_resident_s;  // of levels that were not there when the walk began
   std::vector<std::int64_t> decide_ns;     // of each step
   std::vector<SimulationSample> samples;

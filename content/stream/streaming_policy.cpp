@@ -1,6 +1,7 @@
 #include "content/stream/streaming_policy.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace probewalk {
 
@@ -74,7 +75,11 @@ void ResidencyPlanner::evict(ResidencyDecision& decision, const LevelBook& book,
   for (const Wanted& each : wanted_) {
     if (each.turn <= plan_turn_ && (each.key.level > 0 || !keep_coarse)) unwanted.push_back(each);
   }
-  std::ranges::sort(unwanted, {}, &Wanted::turn);
+  const auto would_be_missed = [&](const Wanted& each) {
+    return book.shown(each.key.room) == static_cast<int>(each.key.level) &&
+           std::ranges::find(decision.in_view, each.key.room) != decision.in_view.end();
+  };
+  std::ranges::sort(unwanted, {}, [&](const Wanted& each) { return std::pair(would_be_missed(each), each.turn); });
   std::uint64_t freed = 0;
   for (const Wanted& each : unwanted) {
     if (freed >= bytes) break;

@@ -23,6 +23,7 @@ struct Walker {
 struct ResidencyDecision {
   std::uint32_t room = 0;               // the walker's
   std::vector<LevelKey> wanted;         // most urgent first; together within the budget
+  std::vector<std::uint32_t> in_view;   // rooms that should not become coarser if that can be helped
   std::vector<LevelKey> loads;          // to begin now, in this order
   std::vector<LevelKey> evictions;      // to do now
   std::vector<LevelKey> cancellations;  // loads under way that are in the way of something more urgent
@@ -40,7 +41,7 @@ class StreamingPolicy {
 
 // Carries out what is wanted within the budget, for every policy alike: what to load now, and what goes for it.
 // Resident, loading and not yet freed bytes together never exceed the budget. What is not wanted goes only to make
-// space, what was wanted longest ago first. Costs as much as what is wanted, however much is resident.
+// space, what was wanted longest ago first, what a room in view shows last of all. Costs as much as what is wanted, however much is resident.
 class ResidencyPlanner {
  public:
   ResidencyPlanner(std::uint64_t budget_bytes, std::uint32_t most_loads)

@@ -1,4 +1,6 @@
 // The residency policy on simulated walks: no device, no files, no clock.
+#include "content/stream/residency.h"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -8,7 +10,6 @@
 
 #include "content/error.h"
 #include "content/probe/device_probe.h"
-#include "content/stream/residency.h"
 
 namespace probewalk {
 namespace {
@@ -39,7 +40,9 @@ Manifest row_of_rooms(std::uint32_t count) {
   return m;
 }
 
-Walker standing(double x) { return {{x, 1.6, 2.0}, {0.0, 0.0, 0.0}}; }
+Walker standing(double x) {
+  return {{x, 1.6, 2.0}, {0.0, 0.0, 0.0}};
+}
 
 // A device and a loader of numbers: loads arrive some updates later, evicted bytes are freed some updates later.
 class Simulation {
@@ -146,11 +149,11 @@ TEST(RoomGraph, FindsTheRoomAndKeepsItInADoorway) {
   const Manifest m = row_of_rooms(3);
   const RoomGraph graph(m.rooms, m.portals);
   EXPECT_EQ(graph.room_of({5.0, 1.0, 1.0}, -1, 0.3), 1u);
-  EXPECT_EQ(graph.room_of({-3.0, 1.0, 1.0}, -1, 0.3), 0u);   // outside: the nearest
+  EXPECT_EQ(graph.room_of({-3.0, 1.0, 1.0}, -1, 0.3), 0u);  // outside: the nearest
   EXPECT_EQ(graph.room_of({50.0, 1.0, 1.0}, -1, 0.3), 2u);
-  EXPECT_EQ(graph.room_of({4.2, 1.0, 1.0}, 0, 0.3), 0u);     // sways into room 1
-  EXPECT_EQ(graph.room_of({4.4, 1.0, 1.0}, 0, 0.3), 1u);     // is in room 1
-  EXPECT_EQ(graph.room_of({3.8, 1.0, 1.0}, 1, 0.3), 1u);     // sways back
+  EXPECT_EQ(graph.room_of({4.2, 1.0, 1.0}, 0, 0.3), 0u);  // sways into room 1
+  EXPECT_EQ(graph.room_of({4.4, 1.0, 1.0}, 0, 0.3), 1u);  // is in room 1
+  EXPECT_EQ(graph.room_of({3.8, 1.0, 1.0}, 1, 0.3), 1u);  // sways back
 }
 
 TEST(RoomGraph, ARoomInsideABiggerOneIsEntered) {
@@ -280,6 +283,44 @@ TEST(Residency, TeleportsSettleWithinTheBudget) {
     for (int k = 0; k < 3; ++k) s.step({{x, 1.6, 2.0}, {500.0, 0.0, 0.0}});
     EXPECT_EQ(s.settle(standing(x)).room, room);
     EXPECT_TRUE(s.resident(room, 2) && s.resident(room, 0)) << x;
+  }
+}
+
+// What a teleport shows at once is what the aim marker has brought in.
+TEST(Residency, AimingBringsInTheTargetBeforeOneIsThere) {
+  const Manifest m = row_of_rooms(40);
+  for (const bool aims : {true, false}) {
+    Simulation s(m, with_budget(8 * kCoarse + 2 * kFine));
+    s.settle(standing(2.0));
+    Walker aiming = standing(2.0);
+    if (aims) aiming.aim_m = glm::dvec3(150.0, 1.6, 2.0);
+    for (int k = 0; k < 30; ++k) EXPECT_EQ(s.step(aiming).room, 0u);  // less than half a second
+    EXPECT_EQ(s.resident(37, 0), aims);
+    EXPECT_TRUE(s.resident(0, 0) && s.resident(0, 2)) << "one is still here";
+    EXPECT_EQ(s.step(standing(150.0)).room, 37u);
+    EXPECT_EQ(s.resident(37, 0), aims) << "in the first frame there";
+    s.settle(standing(150.0));
+    EXPECT_TRUE(s.resident(37, 2));
+  }
+}
+
+// All directions that a marker sweeps over are no reason to lose what is around one.
+TEST(Residency, AMarkerThatSweepsOverTheBuildingTakesNothingOfWhatIsInView) {
+  const Manifest m = row_of_rooms(40);
+  Simulation s(m, with_budget(8 * kCoarse + 2 * kFine));
+  Walker aiming{{2.0, 1.6, 2.0}, {0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}};
+  s.settle(aiming);
+  std::vector<LevelKey> shown;
+  for (std::uint32_t room = 0; room < 2; ++room) {
+    for (std::uint32_t level = 0; level < 3; ++level) {
+      if (s.resident(room, level)) shown.push_back({room, level});
+    }
+  }
+  ASSERT_GE(shown.size(), 3u);
+  for (int k = 0; k < 400; ++k) {
+    aiming.aim_m = glm::dvec3(10.0 + 0.37 * k, 1.6, 2.0);
+    s.step(aiming);
+    for (const LevelKey& key : shown) ASSERT_TRUE(s.resident(key.room, key.level)) << key.room << ' ' << key.level;
   }
 }
 

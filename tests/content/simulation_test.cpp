@@ -99,6 +99,34 @@ TEST(Simulation, TheProductLacksLittleMoreThanTheOracleAndLessThanPlainPolicies)
   EXPECT_LT(missing[0], missing[3] + 0.25) << "against the oracle";
 }
 
+// A room in view hardly ever becomes coarser, and then for the sake of the room around the walker; it never goes dark.
+TEST(Simulation, WhatIsInViewIsNeverEvictedToNothing) {
+  const Manifest site = site_of_rooms(model_pack(), 60);
+  const RoomGraph graph(site.rooms, site.portals);
+  std::size_t steps = 0, evictions = 0, in_view = 0, plain_to_nothing = 0;
+  std::uint64_t seed = 1;
+  for (const double rate : {5e6, 20e6, 80e6, 500e6}) {
+    for (const double latency_s : {0.0, 0.02, 0.1, 0.3}) {
+      for (const WalkKind kind : kAllWalkKinds) {
+        const SimulatedWalk walk = random_walk(site, kind, seed++, 20.0, 1.0 / 30.0);
+        const WalkViews views(graph, walk);
+        const SimulationOptions options = options_for(site, 0.1, rate, latency_s);
+        const SimulationResult result = simulate_policy("probewalk", site, graph, walk, views, options);
+        EXPECT_EQ(result.evictions_to_nothing_in_view, 0u)
+            << walk.kind << ", " << rate << " B/s, " << latency_s << " s";
+        EXPECT_EQ(result.over_budget_steps, 0u);
+        steps += result.steps;
+        evictions += result.evictions;
+        in_view += result.evictions_in_view;
+        plain_to_nothing += simulate_policy("lru", site, graph, walk, views, options).evictions_to_nothing_in_view;
+      }
+    }
+  }
+  EXPECT_GT(evictions, 200u);
+  EXPECT_LT(in_view, steps / 500);
+  EXPECT_GT(plain_to_nothing, 0u) << "what is asserted above can happen";
+}
+
 TEST(Simulation, ADecisionCostsNoMoreInASiteAHundredTimesAsLarge) {
   std::int64_t cost_ns[2] = {};
   for (int k = 0; k < 2; ++k) {

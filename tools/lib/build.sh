@@ -7,6 +7,7 @@ preset=$1; shift
 dir=build/$preset log=build/$preset.log
 export CCACHE_DIR=${CCACHE_DIR:-$PWD/build/ccache} NINJA_STATUS='[%f/%t] '
 mkdir -p "$CCACHE_DIR" 2>/dev/null || CCACHE_DIR=$PWD/build/ccache   # one that is not visible here
+export CCACHE_BASEDIR=$PWD CCACHE_NOHASHDIR=1   # clones that share a cache find each other's objects
 
 fail() {
   grep -A 8 -m 3 -E 'error:|FAILED:|CMake Error' "$log" >&2 || tail -n 20 "$log" >&2

@@ -11,6 +11,7 @@
 #include <set>
 
 #include "xr/latency/report_text.h"
+#include "xr/latency/streaming_section.h"
 
 namespace probewalk {
 namespace {
@@ -171,10 +172,7 @@ const std::vector<Term>& terms() {
       {"CPU governor", [](const Run& r) { return r.info.machine.governor; }},
       {"system", [](const Run& r) { return r.info.machine.operating_system + ", " + r.info.machine.kernel; }},
       {"device budget",
-       [](const Run& r) {
-         const std::uint64_t bytes = r.info.streaming.device_budget_bytes;
-         return bytes > 0 ? in_bytes(bytes) : std::string("none set");
-       }},
+       [](const Run& r) { return budget_in_words(r.info.streaming); }},
       {"frames counted",
        [](const Run& r) { return fmt::format("{}", r.ledger.frames().size() - r.ledger.first_counted()); }, false,
        true},

@@ -246,10 +246,7 @@ const std::vector<Fact>& facts() {
                     : std::string("its own cost was not measured in this run");
        }},
       {"device budget",
-       [](const Run& r, const Summary&) {
-         const std::uint64_t bytes = r.info.streaming.device_budget_bytes;
-         return bytes > 0 ? in_bytes(bytes) : std::string("none set");
-       }},
+       [](const Run& r, const Summary&) { return budget_in_words(r.info.streaming); }},
       {"web server",
        [](const Run& r, const Summary&) { return r.info.streaming.source ? words_of(*r.info.streaming.source) : ""; }},
   };

@@ -58,6 +58,7 @@ struct LevelTrouble {
 struct StreamingFacts {
   std::uint64_t rooms_loaded = 0;
   std::uint64_t device_budget_bytes = 0;          // 0 = none was set
+  std::uint64_t device_free_bytes = 0;            // at the start, the limit where no budget was set; 0 = one was
   std::vector<std::int64_t> need_to_resident_ns;  // one a room or level: first wanted to first drawable
   std::vector<LevelLoad> loads;                   // for trace.json; kept only where a report is asked for
   std::vector<LevelTrouble> troubles;

@@ -143,6 +143,12 @@ std::string milliseconds(std::int64_t ns) {
 
 }  // namespace
 
+std::string budget_in_words(const StreamingFacts& facts) {
+  if (facts.device_budget_bytes > 0) return in_bytes(facts.device_budget_bytes);
+  return facts.device_free_bytes > 0 ? "none set, the device had " + in_bytes(facts.device_free_bytes) + " free"
+                                     : "none set";
+}
+
 std::string streaming_section(const Run& run, const Summary& summary) {
   const auto& frames = run.ledger.frames();
   if (std::ranges::none_of(frames, has_levels)) return {};
@@ -172,7 +178,7 @@ std::string streaming_section(const Run& run, const Summary& summary) {
   tile(html, in_bytes(summary.bytes_uploaded), fmt::format("uploaded, {} rooms loaded", facts.rooms_loaded));
   tile(html, in_bytes(summary.device_bytes_max),
        facts.device_budget_bytes > 0 ? "on the device at most, of a budget of " + in_bytes(facts.device_budget_bytes)
-                                     : std::string("on the device at most; no budget was set"),
+                                     : "on the device at most; budget: " + budget_in_words(facts),
        facts.device_budget_bytes > 0 && summary.device_bytes_max > facts.device_budget_bytes ? "bad" : "");
   if (summary.frame_thread_p99_ns) {
     tile(html, milliseconds(*summary.frame_thread_p99_ns), "p99 of what streaming takes from the frame thread");

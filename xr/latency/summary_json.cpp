@@ -88,6 +88,7 @@ Json streaming_json(const Summary& summary, const StreamingFacts& facts) {
           {"frame_thread_p99_ns", or_null(summary.frame_thread_p99_ns)},
           {"device_bytes_max", summary.device_bytes_max},
           {"device_budget_bytes", facts.device_budget_bytes > 0 ? Json(facts.device_budget_bytes) : Json()},
+          {"device_free_bytes", facts.device_free_bytes > 0 ? Json(facts.device_free_bytes) : Json()},
           {"source", source_json(facts.source)},
           {"troubles", troubles_json(facts.troubles)}};
 }
@@ -256,6 +257,7 @@ SummaryHead parse_summary_json(std::string_view text, const std::string& file) {
   const Json streaming = object_in(json, "streaming");
   take(streaming, "rooms_loaded", info.streaming.rooms_loaded, file);
   take(streaming, "device_budget_bytes", info.streaming.device_budget_bytes, file);
+  take(streaming, "device_free_bytes", info.streaming.device_free_bytes, file);
   take(streaming, "need_to_resident_ns", info.streaming.need_to_resident_ns, file);
   take_source_facts(streaming, info.streaming, file);
   if (const auto changes = json.find("display_changes"); changes != json.end() && changes->is_array()) {

@@ -51,6 +51,13 @@ TEST(StreamingSection, TellsSharesTimesBytesAndBudget) {
                     HasSubstr("class=\"dark\""), HasSubstr("class=\"coarse\""), Not(HasSubstr("could be loaded"))));
 }
 
+TEST(StreamingSection, WithoutABudgetSaysWhatTheDeviceHad) {
+  auto run = coarse_between(40, 47);
+  EXPECT_THAT(section(run), HasSubstr("budget: none set"));
+  run.info.streaming.device_free_bytes = 3ull << 30;
+  EXPECT_THAT(section(run), HasSubstr("budget: none set, the device had 3.00 GiB free"));
+}
+
 TEST(StreamingSection, NamesWhatCouldNotBeLoadedWhatNeverCameFirst) {
   auto run = coarse_between(40, 47);
   run.info.streaming.troubles = {{"hall", 1, 1, true, "the server was away"}, {"a<b", 2, 2, false, "chunk is damaged"}};

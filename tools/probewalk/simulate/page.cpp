@@ -58,18 +58,22 @@ std::string plots(const PageFacts& facts, const Trial& trial) {
 std::string policies(const Trial& trial) {
   std::string html =
       "<div class=\"scroll\"><table><tr><th>policy</th><th>lacks, octaves</th><th>more than the best</th><th>coarse "
-      "frames</th><th>longest</th><th>frames with a hole</th><th>need to resident p50</th><th>p99</th><th>moved</th>"
-      "<th>most held</th><th>over budget</th><th>loads</th><th>evictions</th><th>failed</th><th>a decision p50</th>"
+      "frames</th><th>longest</th><th>frames with a hole</th><th>with a dark room in view</th><th>need to resident "
+      "p50</th><th>p99</th><th>moved</th>"
+      "<th>most held</th><th>over budget</th><th>loads</th><th>evictions</th><th>of what was in "
+      "view</th><th>failed</th><th>a decision p50</th>"
       "<th>p99</th></tr>\n";
   for (const PolicyTrial& p : trial.policies) {
     fmt::format_to(std::back_inserter(html),
-                   "<tr><td>{}</td><td>{:.3f}</td><td>{:.3f}</td><td>{:.2f} %</td><td>{:.2f} s</td><td>{:.2f} %</td>"
+                   "<tr><td>{}</td><td>{:.3f}</td><td>{:.3f}</td><td>{:.2f} %</td><td>{:.2f} s</td><td>{:.2f} "
+                   "%</td><td>{:.2f} %</td>"
                    "<td>{:.0f} ms</td><td>{:.0f} ms</td><td>{:.0f} MB</td><td>{:.1f} MiB</td><td>{}</td><td>{}</td>"
-                   "<td>{}</td><td>{}</td><td>{:.1f} µs</td><td>{:.1f} µs</td></tr>\n",
+                   "<td>{}</td><td>{}</td><td>{}</td><td>{:.1f} µs</td><td>{:.1f} µs</td></tr>\n",
                    html_escaped(p.policy), p.missing_octaves, p.regret_octaves, 100.0 * p.coarse_share,
-                   p.coarse_run_max_s, 100.0 * p.hole_share, p.need_p50_s * 1e3, p.need_p99_s * 1e3,
-                   p.bytes_moved * 1e-6, double(p.held_bytes_max) / kMiB, p.over_budget_steps, p.loads, p.evictions,
-                   p.failures, p.decide_p50_ns * 1e-3, p.decide_p99_ns * 1e-3);
+                   p.coarse_run_max_s, 100.0 * p.hole_share, 100.0 * p.dark_view_share, p.need_p50_s * 1e3,
+                   p.need_p99_s * 1e3, p.bytes_moved * 1e-6, double(p.held_bytes_max) / kMiB, p.over_budget_steps,
+                   p.loads, p.evictions, p.evictions_in_view, p.failures, p.decide_p50_ns * 1e-3,
+                   p.decide_p99_ns * 1e-3);
   }
   return html + "</table></div>\n";
 }
@@ -87,7 +91,9 @@ std::string simulation_page(const PageFacts& facts, const Trial& trial) {
       "<p>{:.0f} s of walking a policy. “Lacks” is the detail that the view misses against every room's finest level, "
       "in "
       "octaves, averaged over directions and time; no policy could go below {:.3f} with this budget, whatever the "
-      "source. A frame is coarse when the walker's room shows less than the policy wants there.</p>\n",
+      "source. A frame is coarse when the walker's room shows less than the policy wants there; a hole is that room "
+      "with nothing to "
+      "show, dark any room in view.</p>\n",
       trial.simulated_s, trial.bound_octaves);
   html +=
       policies(trial) + "<h2>The first walk</h2>\n" + plots(facts, trial) + "<h2>What was simulated</h2>\n<table>\n";

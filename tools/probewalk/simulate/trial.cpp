@@ -40,11 +40,14 @@ Trial run_trial(const Manifest& manifest, const std::vector<SimulatedWalk>& walk
       sum.missing_octaves += result.missing_octaves * n;
       sum.coarse_share += static_cast<double>(result.coarse_steps);
       sum.hole_share += static_cast<double>(result.hole_steps);
+      sum.dark_view_share += static_cast<double>(result.dark_view_steps);
       sum.coarse_run_max_s =
           std::max(sum.coarse_run_max_s, static_cast<double>(result.coarse_run_max) * walks[w].step_s);
       sum.over_budget_steps += result.over_budget_steps;
       sum.loads += result.loads;
       sum.evictions += result.evictions;
+      sum.evictions_in_view += result.evictions_in_view;
+      sum.evictions_to_nothing_in_view += result.evictions_to_nothing_in_view;
       sum.cancellations += result.cancellations;
       sum.failures += result.failures;
       sum.held_bytes_max = std::max(sum.held_bytes_max, result.held_bytes_max);
@@ -67,6 +70,7 @@ Trial run_trial(const Manifest& manifest, const std::vector<SimulatedWalk>& walk
     sum.missing_octaves /= steps;
     sum.coarse_share /= steps;
     sum.hole_share /= steps;
+    sum.dark_view_share /= steps;
     if (!waits[k].need_s.empty()) {
       sum.need_p50_s = bench::quantile(waits[k].need_s, 0.5);
       sum.need_p99_s = bench::quantile(waits[k].need_s, 0.99);
@@ -89,6 +93,7 @@ nlohmann::ordered_json to_json(const Trial& trial) {
                         {"coarse_frame_fraction", p.coarse_share},
                         {"coarse_run_max_s", p.coarse_run_max_s},
                         {"hole_frame_fraction", p.hole_share},
+                        {"dark_view_frame_fraction", p.dark_view_share},
                         {"need_to_resident_p50_ns", p.need_p50_s * 1e9},
                         {"need_to_resident_p99_ns", p.need_p99_s * 1e9},
                         {"device_bytes_max", p.held_bytes_max},
@@ -96,6 +101,8 @@ nlohmann::ordered_json to_json(const Trial& trial) {
                         {"bytes_moved", p.bytes_moved},
                         {"loads", p.loads},
                         {"evictions", p.evictions},
+                        {"evictions_in_view", p.evictions_in_view},
+                        {"evictions_to_nothing_in_view", p.evictions_to_nothing_in_view},
                         {"cancellations", p.cancellations},
                         {"failures", p.failures},
                         {"decide_p50_ns", p.decide_p50_ns},
@@ -107,16 +114,16 @@ nlohmann::ordered_json to_json(const Trial& trial) {
 
 std::vector<std::string> table(const Trial& trial) {
   std::vector<std::string> lines;
-  lines.push_back(fmt::format("{:<11} {:>8} {:>7} {:>8} {:>9} {:>7} {:>10} {:>10} {:>9} {:>9} {:>9}", "policy",
-                              "missing", "regret", "coarse", "longest", "holes", "need p50", "need p99", "moved",
-                              "held", "decide"));
+  lines.push_back(fmt::format("{:<11} {:>8} {:>7} {:>8} {:>9} {:>7} {:>7} {:>10} {:>10} {:>9} {:>9} {:>9}", "policy",
+                              "missing", "regret", "coarse", "longest", "holes", "dark", "need p50", "need p99",
+                              "moved", "held", "decide"));
   for (const PolicyTrial& p : trial.policies) {
-    lines.push_back(
-        fmt::format("{:<11} {:>8.3f} {:>7.3f} {:>6.2f} % {:>7.2f} s {:>5.2f} % {:>7.0f} ms {:>7.0f} ms {:>6.0f} MB "
-                    "{:>5.0f} MiB {:>6.1f} us",
-                    p.policy, p.missing_octaves, p.regret_octaves, 100.0 * p.coarse_share, p.coarse_run_max_s,
-                    100.0 * p.hole_share, p.need_p50_s * 1e3, p.need_p99_s * 1e3, p.bytes_moved * 1e-6,
-                    static_cast<double>(p.held_bytes_max) / (1 << 20), p.decide_p50_ns * 1e-3));
+    lines.push_back(fmt::format(
+        "{:<11} {:>8.3f} {:>7.3f} {:>6.2f} % {:>7.2f} s {:>5.2f} % {:>5.2f} % {:>7.0f} ms {:>7.0f} ms {:>6.0f} MB "
+        "{:>5.0f} MiB {:>6.1f} us",
+        p.policy, p.missing_octaves, p.regret_octaves, 100.0 * p.coarse_share, p.coarse_run_max_s, 100.0 * p.hole_share,
+        100.0 * p.dark_view_share, p.need_p50_s * 1e3, p.need_p99_s * 1e3, p.bytes_moved * 1e-6,
+        static_cast<double>(p.held_bytes_max) / (1 << 20), p.decide_p50_ns * 1e-3));
   }
   return lines;
 }

@@ -18,9 +18,10 @@ struct PolicyTrial {
   std::size_t walks = 0, steps = 0;
   double missing_octaves = 0.0;  // mean over all steps; see SimulationResult
   double regret_octaves = 0.0;   // mean over walks of what it lacks more than the best policy knows how to have there
-  double coarse_share = 0.0, hole_share = 0.0;
+  double coarse_share = 0.0, hole_share = 0.0, dark_view_share = 0.0;
   double coarse_run_max_s = 0.0;
   std::size_t over_budget_steps = 0, loads = 0, evictions = 0, cancellations = 0, failures = 0;
+  std::size_t evictions_in_view = 0, evictions_to_nothing_in_view = 0;  // see SimulationResult
   std::uint64_t held_bytes_max = 0;
   double bytes_moved = 0.0;
   double need_p50_s = 0.0, need_p99_s = 0.0;  // from wanted to resident
