@@ -56,11 +56,14 @@ void open_mirrored(Display& display, const DisplayOptions& options, const FloorM
   const ShownEyes shown = options.window_eyes.value_or(ShownEyes::kLeft);
   if (shown != ShownEyes::kNone) {
     try {
-      const VkExtent2D size =
-          shown == ShownEyes::kSpectator
-              ? kSpectatorSize
-              : window_size(
-                    {options.eye_size.width > 0 ? options.eye_size : kMirrorSize, shown, options.eyes, {}, nullptr});
+      const VkExtent2D size = shown == ShownEyes::kSpectator
+                                  ? kSpectatorSize
+                                  : window_size({options.eye_size.width > 0 ? options.eye_size : kMirrorSize,
+                                                 shown,
+                                                 options.eyes,
+                                                 ViewLayout::kStereo,
+                                                 {},
+                                                 nullptr});
       display.window = std::make_unique<Window>("Probewalk: mirror", size);
       display.device = std::make_unique<Device>(
           with_window(display.runtime->device_hooks(), display.window->device_hooks()), options.device);
@@ -84,8 +87,14 @@ Display open_window(const DisplayOptions& options, const FloorMap& floor, const 
   ShownEyes shown = options.window_eyes.value_or(ShownEyes::kBoth);
   // A headset's mirror, or none: without a headset the window is what there is to see.
   if (shown == ShownEyes::kNone || shown == ShownEyes::kSpectator) shown = ShownEyes::kBoth;
-  const WindowOptions window{eye_size_or_default(options), shown, options.eyes,
-                             locomotion_of(options, "off", kEyeHeight_m), options.overlay};
+  const ViewLayout views = options.views == ViewLayout::kMono ? ViewLayout::kMono : ViewLayout::kStereo;
+  if (views == ViewLayout::kMono) shown = ShownEyes::kLeft;  // the only one
+  const WindowOptions window{eye_size_or_default(options),
+                             shown,
+                             options.eyes,
+                             views,
+                             locomotion_of(options, "off", kEyeHeight_m),
+                             options.overlay};
   Display display;
   display.window = std::make_unique<Window>("Probewalk", window_size(window));
   display.device = std::make_unique<Device>(display.window->device_hooks(), options.device);
@@ -98,7 +107,7 @@ Display open_offscreen(const DisplayOptions& options, const Pose& start, bool in
   offscreen.in_real_time = in_real_time;
   offscreen.eye_size = eye_size_or_default(options);
   offscreen.eyes = options.eyes;
-  offscreen.layout = options.offscreen_layout;
+  offscreen.layout = options.views;
   offscreen.eyes.ipd_m *= options.locomotion.world_scale;
   Display display;
   display.device = std::make_unique<Device>(DeviceHooks{}, options.device);

@@ -40,7 +40,7 @@ struct DisplayOptions {
   bool asks_for_poses = true;           // headset: for what the pose errors are measured against
   bool offscreen_in_real_time = false;  // at the pace of a display, not on a fixed clock
   LocomotionOptions locomotion;
-  ViewLayout offscreen_layout = ViewLayout::kStereo;
+  ViewLayout views = ViewLayout::kStereo;  // window (mono or stereo) and offscreen; a headset has its own
   EyeGeometry eyes;  // window and offscreen, in the viewer's metres; a headset has its own
   DeviceOptions device;
 };

@@ -20,6 +20,7 @@ std::vector<ViewPose> eyes_of(const Pose& head_pose, const EyeGeometry& eyes, Vk
   centre.fov_up_rad = fov.up_rad;
   centre.fov_down_rad = fov.down_rad;
   if (head != nullptr) *head = centre;
+  if (layout == ViewLayout::kMono) return {centre};
   const glm::dvec3 half_m = centre.orientation * glm::dvec3(eyes.ipd_m / 2, 0, 0);
   std::vector<ViewPose> views{centre, centre};
   views[0].position_m -= half_m;

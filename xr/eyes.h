@@ -14,15 +14,18 @@ struct EyeGeometry {
   double vertical_fov_rad = 1.2217304763960306;  // 70 degrees
 };
 
-// What the views of a display are; eyes_of gives them in this order. The second is that of OpenXR's configurations with
-// foveated insets: left and right, wide; left and right again, narrow around the axis and so much denser.
-enum class ViewLayout { kStereo, kStereoWithInsets };
+// What the views of a display are; eyes_of gives them in this order. Mono: one, between the eyes. The last is that of
+// OpenXR's configurations with foveated insets: left and right, wide; left and right again, narrow around the axis and
+// so much denser.
+enum class ViewLayout { kMono, kStereo, kStereoWithInsets };
 
 inline constexpr float kInsetShare = 1.0f / 3.0f;  // of the wide view's plane, both ways
 
-constexpr std::uint32_t view_count_of(ViewLayout layout) { return layout == ViewLayout::kStereo ? 2 : 4; }
+constexpr std::uint32_t view_count_of(ViewLayout layout) {
+  return layout == ViewLayout::kMono ? 1 : layout == ViewLayout::kStereo ? 2 : 4;
+}
 
-// Left and right eye of a head, with symmetric fields of view and square pixels. `head` receives the head's pose.
+// The views of a head, with symmetric fields of view and square pixels. `head` receives the head's pose.
 std::vector<ViewPose> eyes_of(const Pose& head_pose, const EyeGeometry& eyes, VkExtent2D extent, ViewPose* head,
                               ViewLayout layout = ViewLayout::kStereo);
 

@@ -18,7 +18,9 @@ OffscreenSource::OffscreenSource(const Device& device, const Pose& head, const O
 
 std::string OffscreenSource::description() const {
   return fmt::format("no display, {}x{} {}, {} of {:.3g} Hz", options_.eye_size.width, options_.eye_size.height,
-                     options_.layout == ViewLayout::kStereo ? "an eye" : "a view, insets in both eyes",
+                     options_.layout == ViewLayout::kMono     ? "in one view"
+                     : options_.layout == ViewLayout::kStereo ? "an eye"
+                                                              : "a view, insets in both eyes",
                      options_.in_real_time ? "at the pace" : "a fixed clock",
                      1e9 / static_cast<double>(options_.period_ns));
 }

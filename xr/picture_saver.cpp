@@ -17,6 +17,7 @@ std::vector<ImageRgb8> read_eyes(const Device& device, const FrameTarget& target
 }
 
 std::string eye_name(std::size_t view, std::size_t views) {
+  if (views == 1) return "mono";
   if (views == 2) return view == 0 ? "left" : "right";
   if (views == 4) return (std::array{"left", "right", "left-inset", "right-inset"})[view];
   return fmt::format("view{}", view);

@@ -21,7 +21,7 @@ WindowSource::WindowSource(Window& window, const Device& device, const FloorMap&
                            const WindowOptions& options)
     : window_(window),
       options_(options),
-      images_(device, options.eye_size, 2),
+      images_(device, options.eye_size, view_count_of(options.views)),
       swapchain_(device, window.create_surface(device.instance()), EyeImages::kCount, WindowSwapchain::Sharing::kAlone,
                  options.overlay),
       pacer_(static_cast<std::int64_t>(std::llround(1e9 / window.refresh_hz()))),
@@ -31,7 +31,8 @@ WindowSource::WindowSource(Window& window, const Device& device, const FloorMap&
 }
 
 std::string WindowSource::description() const {
-  return fmt::format("a window, {}x{} an eye, paced at {:.3g} Hz", options_.eye_size.width, options_.eye_size.height,
+  return fmt::format("a window, {}x{}{}, paced at {:.3g} Hz", options_.eye_size.width, options_.eye_size.height,
+                     options_.views == ViewLayout::kMono ? "" : " an eye",
                      1e9 / static_cast<double>(pacer_.period_ns()));
 }
 
@@ -52,7 +53,7 @@ std::optional<AimRay> WindowSource::ray_through(glm::dvec2 place_in_window) cons
   const VkExtent2D window = window_.framebuffer_extent();
   const auto place = view_under(window_layout(options_.shown, options_.eye_size, window), window, place_in_window);
   if (!place) return std::nullopt;
-  const ViewPose eye = eyes_of(head_.in_rig(), options_.eyes, options_.eye_size, nullptr)[place->view];
+  const ViewPose eye = eyes_of(head_.in_rig(), options_.eyes, options_.eye_size, nullptr, options_.views)[place->view];
   const auto between = [](float low_rad, float high_rad, double f) {
     return glm::mix(std::tan(static_cast<double>(low_rad)), std::tan(static_cast<double>(high_rad)), f);
   };
@@ -86,7 +87,7 @@ FrameTiming WindowSource::wait() {
 std::vector<ViewPose> WindowSource::locate(const FrameTiming&, ViewPose* head) {
   EyeGeometry eyes = options_.eyes;
   eyes.ipd_m *= options_.locomotion.world_scale;
-  return eyes_of(head_.in_world(locomotion_.rig()), eyes, options_.eye_size, head);
+  return eyes_of(head_.in_world(locomotion_.rig()), eyes, options_.eye_size, head, options_.views);
 }
 
 FrameTarget WindowSource::acquire(VkExtent2D drawn) {

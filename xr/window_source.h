@@ -1,4 +1,4 @@
-// Frames to a window on the desktop: both eyes side by side, or one. Drag to look, WASD to walk, shift to run, Q and E
+// Frames to a window on the desktop: both eyes side by side, one of them, or a single view. Drag to look, WASD to walk, shift to run, Q and E
 // (or the arrows) to turn, click on the floor to go there, R to recentre, F12 for a picture, Esc to leave.
 #pragma once
 
@@ -19,6 +19,7 @@ struct WindowOptions {
   VkExtent2D eye_size{640, 720};
   ShownEyes shown = ShownEyes::kBoth;
   EyeGeometry eyes;  // the viewer's: in their own metres
+  ViewLayout views = ViewLayout::kStereo;  // or kMono, of which kLeft shows the one view
   LocomotionOptions locomotion;
   OverlayBoard* overlay = nullptr;  // shown and hidden by F1; outlives the source
 };
@@ -40,7 +41,7 @@ class WindowSource final : public FrameSource {
   void begin(FrameTiming&) override {}
   std::vector<ViewPose> locate(const FrameTiming& timing, ViewPose* head) override;
   VkExtent2D view_extent() const override { return options_.eye_size; }
-  std::uint32_t view_count() const override { return 2; }
+  std::uint32_t view_count() const override { return view_count_of(options_.views); }
   VkFormat color_format() const override { return EyeImages::kFormat; }
   FrameTarget acquire(VkExtent2D drawn) override;
   void end(const FrameTiming& timing, const std::vector<ViewPose>& rendered_views) override;

@@ -4,9 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <sstream>
 
 #include "content/image/image.h"
@@ -324,9 +326,10 @@ TEST(Displays, QuadViewsShowEachEyeItsInsetInItsPlace) {
   std::ofstream(folder / "pose.jsonl")
       << R"({"t_s":0,"position_m":[-1,1.55,1.2],"orientation_xyzw":[0,-0.2,0,0.9797958971132712]})" << "\n";
   const std::string walk =
-      "\"$probewalk\" walk \"$pack\" --display offscreen --path pose.jsonl --frames 3 --settle --validate --save-frames ";
-  const RunResult run = run_script(folder, walk + "quad --views quad --eye-size 96x64 && " + walk + "wide --eye-size 96x64 && " +
-                                               walk + "dense --eye-size 288x192");
+      "\"$probewalk\" walk \"$pack\" --display offscreen --path pose.jsonl --frames 3 --settle --validate "
+      "--save-frames ";
+  const RunResult run = run_script(folder, walk + "quad --views quad --eye-size 96x64 && " + walk +
+                                               "wide --eye-size 96x64 && " + walk + "dense --eye-size 288x192");
   ASSERT_EQ(run.exit_code, 0) << run.err;
   for (const std::string eye : {"left", "right"}) {
     const std::string name = "frame-000002-" + eye;
@@ -355,6 +358,42 @@ TEST(Displays, QuadViewsShowEachEyeItsInsetInItsPlace) {
     EXPECT_LT(off[0] / count[0], 6.0);
   }
   EXPECT_EQ(run_script(folder, "\"$probewalk\" walk \"$pack\" --display window --views quad").exit_code, 2);
+}
+
+TEST(Displays, MonoIsOneViewFromBetweenTheEyesOffscreenAndInAWindow) {
+  const fs::path folder = fresh_folder("displays-mono");
+  write_pose(folder / "pose.jsonl");
+  const std::string walk = "\"$probewalk\" walk \"$pack\" --frames 3 --settle --validate --eye-size 96x64 ";
+  // Eyes at one place see what the single one sees.
+  std::ifstream in(folder / "pose.jsonl");
+  json pose = json::parse(in);
+  json view{{"position_m", pose["position_m"]}, {"orientation_xyzw", pose["orientation_xyzw"]}};
+  const double up_rad = std::numbers::pi * 35.0 / 180.0, side_rad = std::atan(1.5 * std::tan(up_rad));
+  view["fov_rad"] = {-side_rad, side_rad, up_rad, -up_rad};
+  pose["views"] = {view, view};
+  std::ofstream(folder / "one-eyed.jsonl") << pose << "\n";
+  const RunResult run = run_script(
+      folder, walk + "--path pose.jsonl --display offscreen --views mono --save-frames mono --report report && " +
+                  walk + "--display offscreen --path one-eyed.jsonl --save-frames stereo");
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const ImageRgb8 mono = read_png(folder / "mono" / "frame-000002-mono.png");
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder / "mono"), {}), 3) << "one picture a frame";
+  const ImageRgb8 eye = read_png(folder / "stereo" / "frame-000002-left.png");
+  ASSERT_EQ(mono.rgb.size(), eye.rgb.size());
+  int most = 0;
+  for (std::size_t i = 0; i < mono.rgb.size(); ++i) most = std::max(most, std::abs(mono.rgb[i] - eye.rgb[i]));
+  EXPECT_LE(most, 2);
+  EXPECT_EQ(json::parse(read_text(folder / "report/summary.json"))["views"], 1);
+  for (const std::string wrong :
+       {"--display headset --views mono", "--views mono", "--display window --views mono --mirror left"}) {
+    EXPECT_EQ(run_script(folder, "\"$probewalk\" walk \"$pack\" " + wrong).exit_code, 2) << wrong;
+  }
+  if (!installed("Xvfb")) GTEST_SKIP() << "Xvfb is not installed";
+  const RunResult window =
+      run_script(folder, std::string(kVirtualScreen) + walk +
+                             "--path pose.jsonl --display window --views mono --save-frames window");
+  ASSERT_EQ(window.exit_code, 0) << window.err;
+  EXPECT_EQ(read_png(folder / "window" / "frame-000002-mono.png").rgb, mono.rgb);
 }
 
 TEST(Displays, WrongWalkOptionsAreRefusedInOneLine) {

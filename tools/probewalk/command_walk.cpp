@@ -123,9 +123,16 @@ void run_walk(WalkArguments arguments, const CommonOptions& common) {
   walk_options.loader_threads = common.threads > 0 ? static_cast<unsigned>(common.threads) : 2;
   walk_options.display.device.device = common.device;
   if (arguments.mirror_option->count() > 0) walk_options.display.window_eyes = arguments.mirror;
-  if (walk_options.display.offscreen_layout != ViewLayout::kStereo &&
-      walk_options.display.choice != DisplayChoice::kOffscreen) {
+  const bool has_window = walk_options.display.choice == DisplayChoice::kWindow;
+  const bool is_offscreen = walk_options.display.choice == DisplayChoice::kOffscreen;
+  if (walk_options.display.views == ViewLayout::kStereoWithInsets && !is_offscreen) {
     throw BadUsage("--views quad needs --display offscreen: headset and window have views of their own");
+  }
+  if (walk_options.display.views == ViewLayout::kMono && !is_offscreen && !has_window) {
+    throw BadUsage("--views mono needs --display window or offscreen: a headset has views of its own");
+  }
+  if (walk_options.display.views == ViewLayout::kMono && arguments.mirror_option->count() > 0) {
+    throw BadUsage("--mirror chooses between two eyes; --views mono has one view");
   }
   if (arguments.mirror == ShownEyes::kSpectator && walk_options.display.choice == DisplayChoice::kWindow) {
     throw BadUsage("--mirror spectator shows others what a wearer sees; it is for headsets");
@@ -222,14 +229,16 @@ void add_walk_command(CLI::App& app, CommonOptions& common) {
                    "auto (headset if a runtime answers, else a window, else offscreen), headset, window, offscreen")
       ->transform(CLI::CheckedTransformer(displays))
       ->option_text("NAME");
-  const std::map<std::string, ViewLayout> layouts{{"stereo", ViewLayout::kStereo},
+  const std::map<std::string, ViewLayout> layouts{{"mono", ViewLayout::kMono},
+                                                  {"stereo", ViewLayout::kStereo},
                                                   {"quad", ViewLayout::kStereoWithInsets}};
   command
       ->add_option(
-          "--views", walk_options.display.offscreen_layout,
-          "Offscreen: stereo, or quad, as headsets with foveated insets have them: each eye wide and, in the "
-          "middle third of that both ways, once more with as many pixels (default: stereo). --save-frames then "
-          "also writes what an eye is shown, the inset in its place. A headset has views of its own")
+          "--views", walk_options.display.views,
+          "In a window or offscreen: stereo, or mono, one view from between the eyes for half the work; offscreen also "
+          "quad, as headsets with foveated insets have them: each eye wide and, in the middle third of that both ways, "
+          "once more with as many pixels (default: stereo). --save-frames then also writes what an eye is shown, the "
+          "inset in its place. A headset has views of its own")
       ->transform(CLI::CheckedTransformer(layouts))
       ->option_text("NAME");
   command->add_option("--path", arguments->path, "Replay this path: JSON lines, as --record writes them");
