@@ -1,5 +1,5 @@
 // How far baked light is off, judged by unbiased paths that share no light sampling with it: by hand, not run by ctest.
-//   light_judge [--texels N] [--paths N] [--probes N] [--samples N] [--spacing-mm N] SCENE...
+//   light_judge [--texels N] [--paths N] [--probes N] [--samples N] [--spacing-mm N] [--worst N] SCENE...
 // At places that probes see, the light that arrives as the bake has it is set beside the mean of reference paths, part
 // by part: lights and patches, which the bake samples directly; the rest, which its cache holds. A part's bias is told
 // as a share of all light, with the standard error over the places; its noise beside that of the judge.
@@ -47,8 +47,23 @@ struct Place {
 };
 
 struct Options {
-  int texels = 300, paths = 4096, probes = 4, samples = 128, spacing_mm = 250;
+  int texels = 300, paths = 4096, probes = 4, samples = 128, spacing_mm = 250, worst = 0;
 };
+
+// Harmonic mean over the hemisphere: small where something is near.
+double mean_free_way_m(const RayScene& rays, glm::vec3 position_m, glm::vec3 normal) {
+  constexpr int kRays = 256;
+  glm::vec3 tangent, bitangent;
+  tangent_frame(normal, tangent, bitangent);
+  double sum = 0.0;
+  for (int k = 0; k < kRays; ++k) {
+    const glm::vec3 local = cosine_direction(hammersley(k, kRays));
+    const SurfaceHit hit = rays.closest(position_m + normal * ray_offset_m(position_m),
+                                        tangent * local.x + bitangent * local.y + normal * local.z);
+    if (hit.hit) sum += 1.0 / std::max(hit.t, 1e-3f);
+  }
+  return kRays / std::max(sum, 1e-9);
+}
 
 void judge(const std::filesystem::path& file, const Options& options) {
   SilentProgress progress;
@@ -153,6 +168,18 @@ void judge(const std::filesystem::path& file, const Options& options) {
   for (std::size_t k = 0; k < off.size(); ++k) (20 * k < off.size() ? worst : rest) += off[k] / all;
   fmt::print("  of the bias of all: {:+.4f} by the twentieth of places that is off most, {:+.4f} by the rest\n", worst,
              rest);
+  std::sort(places.begin(), places.end(), [](const Place& a, const Place& b) {
+    return std::abs(a.baked[kAll] - a.judged[kAll]) > std::abs(b.baked[kAll] - b.judged[kAll]);
+  });
+  for (int k = 0; k < std::min(options.worst, int(places.size())); ++k) {
+    const Place& place = places[std::size_t(k)];
+    const glm::vec3 p = place.surface.position_m, g = place.surface.geometric_normal;
+    const double near_m = mean_free_way_m(rays, p, g);
+    fmt::print("  ({:.3f} {:.3f} {:.3f}) facing ({:+.2f} {:+.2f} {:+.2f}), {:.3f} m free around: baked {:.4f} for {:.4f} "
+               "+- {:.4f}, {:+.4f} of all light\n",
+               p.x, p.y, p.z, g.x, g.y, g.z, near_m, place.baked[kAll] * n / all, place.judged[kAll] * n / all,
+               std::sqrt(place.variance[kAll]) * n / all, (place.baked[kAll] - place.judged[kAll]) / all);
+  }
   std::fflush(stdout);
 }
 
@@ -163,7 +190,7 @@ int run(const std::vector<std::string>& arguments) {
                                             {"--paths", &options.paths},
                                             {"--probes", &options.probes},
                                             {"--samples", &options.samples},
-                                            {"--spacing-mm", &options.spacing_mm}};
+                                            {"--spacing-mm", &options.spacing_mm}, {"--worst", &options.worst}};
   for (std::size_t k = 0; k < arguments.size(); ++k) {
     const auto number = numbers.find(arguments[k]);
     if (number == numbers.end()) {
@@ -180,7 +207,7 @@ int run(const std::vector<std::string>& arguments) {
   if (options.texels < 2) throw std::runtime_error("--texels: at least 2, or no standard error can be told");
   if (scenes.empty()) {
     throw std::runtime_error(
-        "usage: light_judge [--texels N] [--paths N] [--probes N] [--samples N] [--spacing-mm N] SCENE...");
+        "usage: light_judge [--texels N] [--paths N] [--probes N] [--samples N] [--spacing-mm N] [--worst N] SCENE...");
   }
   for (const std::filesystem::path& scene : scenes) judge(scene, options);
   return 0;
