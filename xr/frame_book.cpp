@@ -33,6 +33,13 @@ void FrameBook::add(const PoseError& error) {
   entry->record.pose_error_deg = error.angle_deg;
 }
 
+void FrameBook::add(const MirrorShown& shown) {
+  const auto entry = std::ranges::find_if(open_, [&](const Entry& e) { return e.record.frame_id == shown.frame_id; });
+  if (entry == open_.end()) return;
+  entry->record.mirror_shown = shown.interval;
+  entry->record.mirror_presented = shown.presented;
+}
+
 void FrameBook::add_ledger_time(const Interval& interval) {
   if (!open_.empty()) open_.back().record.ledger = interval;
 }

@@ -1,4 +1,4 @@
-// Collects what becomes known of a frame only later (device times, the pose that was right after all), and hands frames
+// Collects what becomes known of a frame only later (device times, the pose that was right after all, whether the mirror got its picture), and hands frames
 // to the ledger in order once nothing more can come.
 #pragma once
 
@@ -20,6 +20,7 @@ class FrameBook {
   void add(const FrameRecord& record, std::uint64_t drawn);
   void add(const FrameGpuTimes& times);
   void add(const PoseError& error);
+  void add(const MirrorShown& shown);
   // What the ledger's own questions took after the frame added last.
   void add_ledger_time(const Interval& interval);
   // Hands over all that is left.

@@ -3,6 +3,7 @@
 #include <spdlog/spdlog.h>
 
 #include <cmath>
+#include <utility>
 
 #include "render/check.h"
 #include "render/commands.h"
@@ -68,10 +69,9 @@ void Mirror::offer_drawn(FrameRecord& record, const std::function<std::optional<
       busy_ = true;
       {
         const std::scoped_lock lock(mutex_);
-        next_ = Picture{*eyes, window};
+        next_ = Picture{*eyes, window, record.frame_id};
       }
       changed_.notify_all();
-      record.mirror_presented = true;
     }
   }
   record.mirror.end = now_ns();
@@ -80,6 +80,11 @@ void Mirror::offer_drawn(FrameRecord& record, const std::function<std::optional<
 void Mirror::settle() {
   std::unique_lock lock(mutex_);
   changed_.wait(lock, [this] { return !busy_; });
+}
+
+std::vector<MirrorShown> Mirror::take_shown() {
+  const std::scoped_lock lock(mutex_);
+  return std::exchange(shown_pictures_, {});
 }
 
 void Mirror::copy(const FrameTarget& target) {
@@ -117,6 +122,8 @@ void Mirror::show_pictures() {
       picture = *next_;
       next_.reset();
     }
+    MirrorShown shown{picture.frame_id, {now_ns(), 0}, false};
+    const std::uint64_t presented_before = swapchain_.presented();
     try {
       // A copy of the eyes; a picture of the mirror's own is waited for where it is copied to the window.
       if (shown_ != ShownEyes::kSpectator) {
@@ -129,8 +136,11 @@ void Mirror::show_pictures() {
       spdlog::warn("the mirror ends: {}", error.what());
       is_lost_ = true;
     }
+    shown.interval.end = now_ns();
+    shown.presented = swapchain_.presented() > presented_before;
     {
       const std::scoped_lock lock(mutex_);
+      shown_pictures_.push_back(shown);
       busy_ = false;
     }
     changed_.notify_all();

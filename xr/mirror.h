@@ -35,20 +35,23 @@ class Mirror {
   // Window events; once a frame, on the thread that made the window.
   WindowInput poll() { return window_.poll(); }
   // After the frame's submit and before its image goes back to the runtime. Fills in what the record says about the
-  // mirror: nothing when no picture was due, not presented when the headset was late (mirror_pacer.h) or the mirror
-  // still busy with the last one.
+  // mirror: nothing when no picture was due. None is shown when the headset was late (mirror_pacer.h) or the mirror still
+  // busy with the last one; take_shown() tells of those that were handed over.
   void offer(const FrameTarget& target, FrameRecord& record);
   // The same for a picture of the mirror's own, which `draw` submits only when one is due; it is left alone until the
   // next call of `draw`. Nothing: not now.
   void offer_drawn(FrameRecord& record, const std::function<std::optional<FrameTarget>()>& draw);
   // Waits until the last picture handed over is no longer read.
   void settle();
+  // What became of pictures since the last call.
+  std::vector<MirrorShown> take_shown();
   ShownEyes shown() const { return shown_; }
 
  private:
   struct Picture {
     FrameTarget eyes;
     VkExtent2D window{};
+    std::uint64_t frame_id = 0;
   };
   void copy(const FrameTarget& target);
   void show_pictures();
@@ -67,6 +70,7 @@ class Mirror {
   std::mutex mutex_;
   std::condition_variable changed_;
   std::optional<Picture> next_;  // handed over, not shown yet
+  std::vector<MirrorShown> shown_pictures_;
   std::atomic<bool> busy_ = false;
   std::atomic<bool> is_lost_ = false;  // window or surface gone: nothing is mirrored any more
   bool stop_ = false;

@@ -295,10 +295,13 @@ void WalkLeg::take_late_answers() {
     eyes_.finished(*times, period_ns_);
   }
   for (const PoseError& error : source_.take_pose_errors()) book_.add(error);
+  if (!display_.mirror) return;
+  for (const MirrorShown& shown : display_.mirror->take_shown()) book_.add(shown);
 }
 
 void WalkLeg::finish() {
   renderer_.wait();
+  if (display_.mirror) display_.mirror->settle();
   take_late_answers();
   source_.finish();
   book_.close();

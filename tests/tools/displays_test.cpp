@@ -232,14 +232,19 @@ TEST(Displays, MirrorShowsWhatTheWearerSeesAndTheWindowTakesOver) {
   std::string line;
   std::getline(frames, line);
   const auto column = [header = line](const std::string& name) {
-    return std::count(header.begin(), header.begin() + static_cast<std::ptrdiff_t>(header.find(name)), ',');
+    const auto at = static_cast<std::ptrdiff_t>(("," + header).find("," + name));
+    return static_cast<std::size_t>(std::count(header.begin(), header.begin() + at, ','));
   };
   int presented = 0;
   while (std::getline(frames, line)) {
-    std::istringstream cells(line);
-    std::string cell;
-    for (std::ptrdiff_t k = 0; k <= column("mirror_presented"); ++k) std::getline(cells, cell, ',');
-    presented += cell == "1";
+    std::istringstream text(line);
+    std::vector<std::string> cells;
+    for (std::string cell; std::getline(text, cell, ',');) cells.push_back(cell);
+    const auto ns = [&](const char* name) { return std::stoll(cells.at(column(name))); };
+    if (ns("mirror_presented") == 0) continue;
+    ++presented;
+    EXPECT_GE(ns("mirror_shown_begin"), ns("mirror_begin")) << "the mirror's thread takes what it was handed";
+    EXPECT_GT(ns("mirror_shown_end"), ns("mirror_shown_begin"));
   }
   EXPECT_GT(presented, 3);
 }

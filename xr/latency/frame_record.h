@@ -61,9 +61,17 @@ struct FrameRecord {
   std::int64_t streaming_ns = 0;  // the frame thread in or blocked on streaming; some of it inside of `record`
   std::uint64_t device_bytes = 0;
   double eye_scale = 1.0;  // of both sides of what was drawn, against the display's own size
-  // Mirror.
+  // Mirror: on the frame thread, which only hands pictures over, and where its own thread brought one to the window.
   Interval mirror;
+  Interval mirror_shown;
   bool mirror_presented = false;
+};
+
+// What became of a picture that was handed to the mirror; known only later.
+struct MirrorShown {
+  std::uint64_t frame_id = 0;
+  Interval interval;       // the mirror's thread at it
+  bool presented = false;  // false: the window was gone, or of another size by then
 };
 
 }  // namespace probewalk

@@ -89,6 +89,8 @@ std::vector<Column> make_columns() {
   columns.push_back(column("pose_answer", &FrameRecord::pose_answer));
   columns.push_back(column("early_pose", &FrameRecord::early_pose));
   columns.push_back(column("process_cpu_ns", &FrameRecord::process_cpu_ns));
+  columns.push_back(column("mirror_shown_begin", &FrameRecord::mirror_shown, &Interval::begin));
+  columns.push_back(column("mirror_shown_end", &FrameRecord::mirror_shown, &Interval::end));
   return columns;
 }
 

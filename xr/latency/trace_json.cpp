@@ -12,7 +12,7 @@ namespace probewalk {
 namespace {
 
 // Loader threads follow from kFirstLoader on.
-enum Track : unsigned { kCalls = 1, kDevice = 2, kMirror = 3, kWaiter = 4, kFirstLoader = 10 };
+enum Track : unsigned { kCalls = 1, kDevice = 2, kMirror = 3, kWaiter = 4, kMirrorThread = 5, kFirstLoader = 10 };
 
 std::string quoted(const std::string& text) {
   return nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
@@ -28,6 +28,7 @@ class TraceWriter {
     name("thread_name", kMirror, "mirror");
   }
 
+  void name_mirror_thread() { name("thread_name", kMirrorThread, "mirror's thread"); }
   void name_waiter() { name("thread_name", kWaiter, "wait ahead"); }
   void name_loader(unsigned thread) {
     name("thread_name", kFirstLoader + thread, fmt::format("loader {}", thread + 1).c_str());
@@ -110,7 +111,7 @@ void add_load(TraceWriter& trace, const LevelLoad& load) {
 std::string trace_json(const Ledger& ledger, const StreamingFacts& streaming) {
   const auto& frames = ledger.frames();
   TraceWriter trace(first_ns(ledger, streaming));
-  bool device_placed = false, waits_ahead = false;
+  bool device_placed = false, waits_ahead = false, mirrors = false;
   std::int64_t device_end_ns = 0;
   for (std::size_t i = 0; i < frames.size(); ++i) {
     const FrameRecord& f = frames[i];
@@ -137,6 +138,10 @@ std::string trace_json(const Ledger& ledger, const StreamingFacts& streaming) {
       device_end_ns = std::max(device_end_ns, f.gpu.end);
     }
     trace.span(kMirror, f.mirror_presented ? "mirror" : "mirror (not presented)", f.mirror, args);
+    if (f.mirror_shown.begin != 0) {
+      if (!std::exchange(mirrors, true)) trace.name_mirror_thread();
+      trace.span(kMirrorThread, f.mirror_presented ? "to the window" : "not to the window", f.mirror_shown, args);
+    }
     const FrameQuantities q = derive(f, i > 0 ? &frames[i - 1] : nullptr, ledger.options().has_deadlines);
     if (q.missed > 0) trace.mark(fmt::format("missed {}", q.missed), f.wait.end);
     if (f.discarded) trace.mark("discarded", f.begin.end);
