@@ -237,7 +237,7 @@ class BakeJob {
   }
 
   void stand(Placement placement) {
-    plan_ = draw_plan(space_, placement);
+    plan_ = draw_plan(scene_, space_, placement).image;
     for (const std::string& warning : space_.warnings) {
       progress_.note("warning: " + warning);
       manifest_.warnings.push_back(warning);

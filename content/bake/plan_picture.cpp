@@ -1,171 +1,352 @@
 #include "content/bake/plan_picture.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
-#include <string>
+#include <set>
+#include <tuple>
+
+#include "content/bake/floor_plan/legend.h"
+#include "content/bake/floor_plan/panels.h"
+#include "content/bake/floor_plan/room_labels.h"
+#include "content/bake/floor_plan/storey_map.h"
+#include "content/image/lettering.h"
 
 namespace probewalk {
 namespace {
 
-using Colour = std::array<std::uint8_t, 3>;
+using namespace plan_colour;
 
-constexpr int kLargest_px = 2000;
-constexpr double kMargin_m = 0.5;
-constexpr double kLeastForNumbers_px_m = 20.0;  // numbers would lie over one another
-constexpr Colour kGround{232, 232, 232}, kPortal{208, 0, 0}, kTour{32, 64, 192}, kStart{0, 160, 0}, kProbe{0, 0, 0};
-constexpr std::array<Colour, 12> kRooms{{{244, 166, 160}, {168, 213, 162}, {159, 195, 238}, {242, 217, 141},
-                                         {201, 177, 228}, {159, 220, 214}, {243, 185, 220}, {216, 207, 154},
-                                         {183, 200, 165}, {230, 180, 138}, {169, 185, 217}, {213, 227, 143}}};
+constexpr double kLowProbe_m = 1.25;       // over the floor
+constexpr double kProbe_px = 3.4, kLowProbe_px = 5.4;
+constexpr double kSamePlace_px = 5.0;      // probes over each other share a label
+constexpr double kArrows_px = 70.0;        // along the tour
+constexpr double kNumberFar_px = 400.0;
+constexpr double kMostNumbers = 0.25;      // share of the panels that numbers may take
+constexpr Lettering kTitleLettering{12, 2.0};
 
-// Digits of 3 x 5 dots, rows from the top, three bits each.
-constexpr std::array<std::uint16_t, 10> kDigits{{0b111101101101111, 0b010110010010111, 0b111001111100111,
-                                                 0b111001111001111, 0b101101111001001, 0b111100111001111,
-                                                 0b111100111101111, 0b111001001001001, 0b111101111101111,
-                                                 0b111101111001111}};
-
-// Heights at which much floor lies, at least a low ceiling's height apart.
-std::vector<double> find_storeys(const FloorMap& floor) {
-  constexpr double kApart_m = 1.5;
-  std::map<int, std::size_t> area;  // by 0.2 m
-  for (const FloorNode& node : floor.nodes) ++area[int(std::floor(node.floor_m / 0.2f + 0.5f))];
-  std::vector<std::pair<std::size_t, double>> peaks;
-  for (const auto& [height, count] : area) peaks.push_back({count, 0.2 * height});
-  std::stable_sort(peaks.begin(), peaks.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
-  std::vector<double> storeys;
-  for (const auto& [count, height] : peaks) {
-    const bool apart = std::all_of(storeys.begin(), storeys.end(), [&](double s) { return std::abs(s - height) >= kApart_m; });
-    if (apart && double(count) >= 0.03 * double(floor.nodes.size()) && storeys.size() < 6) storeys.push_back(height);
-  }
-  std::sort(storeys.begin(), storeys.end());
-  return storeys;
+void draw_portal_line(Canvas& canvas, glm::dvec2 a, glm::dvec2 b) {
+  const double length = glm::distance(a, b);
+  canvas.stroke(a, b, 3.0, kPortal);
+  if (length < 1.0) return;
+  // Ticks at the jambs, so that the width is read as on a measured drawing.
+  const glm::dvec2 side = 4.5 * glm::dvec2(-(b - a).y, (b - a).x) / length;
+  canvas.stroke(a - side, a + side, 1.4, kPortal);
+  canvas.stroke(b - side, b + side, 1.4, kPortal);
 }
 
-class Plan {
- public:
-  Plan(const Space& space, const Placement& placement) : space_(space), storeys_(find_storeys(space.floor)) {
-    lower_m_ = glm::dvec2(HUGE_VAL);
-    glm::dvec2 upper_m(-HUGE_VAL);
-    const auto include = [&](glm::dvec2 p) {
-      lower_m_ = glm::min(lower_m_, p - kMargin_m);
-      upper_m = glm::max(upper_m, p + kMargin_m);
-    };
-    for (const FloorNode& node : space.floor.nodes) include(middle_m(node));
-    for (const ProbeSite& site : placement.sites) include({site.position_m.x, site.position_m.z});
-    if (storeys_.empty()) storeys_.push_back(space.start.position_m.y - kEyeHeight_m);
-    const glm::dvec2 size_m = glm::max(upper_m - lower_m_, glm::dvec2(1.0));
-    const double panels = double(storeys_.size());
-    px_per_m_ = std::min({60.0, kLargest_px / size_m.y, kLargest_px / (size_m.x * panels)});
-    panel_px_ = glm::ivec2(size_m * px_per_m_) + 1;
-    picture_.width_px = panel_px_.x * int(storeys_.size());
-    picture_.height_px = panel_px_.y;
-    picture_.rgb.assign(std::size_t(3) * picture_.width_px * picture_.height_px, 255);
-    fill();
-    draw(placement);
+// Dashed, as what lies above or below the cut.
+void draw_drop_line(Canvas& canvas, glm::dvec2 a, glm::dvec2 b) { canvas.dashes(a, b, 2.2, 6.0, kPortal); }
+
+void draw_tour_arrow(Canvas& canvas, glm::dvec2 at, glm::dvec2 ahead) {
+  const glm::dvec2 side(-ahead.y, ahead.x);
+  const glm::dvec2 head[]{at + 6.0 * ahead, at - 4.0 * ahead + 4.5 * side, at - 4.0 * ahead - 4.5 * side};
+  canvas.polygon(head, kTour);
+}
+
+void draw_start(Canvas& canvas, glm::dvec2 at, glm::dvec2 ahead) {
+  const glm::dvec2 side(-ahead.y, ahead.x);
+  canvas.stroke(at, at + 16.0 * ahead, 3.0, kStart);
+  const glm::dvec2 head[]{at + 25.0 * ahead, at + 13.0 * ahead + 6.5 * side, at + 13.0 * ahead - 6.5 * side};
+  canvas.polygon(head, kStart);
+  canvas.disc(at, 6.0, kStart);
+  canvas.disc(at, 2.5, kPaper);
+}
+
+void draw_probe(Canvas& canvas, glm::dvec2 at, bool low) {
+  if (low) {
+    canvas.disc(at, kLowProbe_px, kPaper, 0.7);
+    canvas.ring(at, kLowProbe_px - 0.7, 1.4, kProbe);
+  } else {
+    canvas.disc(at, kProbe_px + 1.2, kPaper);
+    canvas.disc(at, kProbe_px, kProbe);
   }
-  ImageRgb8 take() { return std::move(picture_); }
+}
+
+std::string heights(const PlanPanel& panel) {
+  if (panel.highest_m - panel.lowest_m < 0.5) return fmt::format("floor at {:.1f} m", panel.lowest_m);
+  return fmt::format("floors at {:.1f} to {:.1f} m", panel.lowest_m, panel.highest_m);
+}
+
+class PlanDrawing {
+ public:
+  PlanDrawing(const Scene& scene, const Space& space, const Placement& placement)
+      : scene_(scene),
+        space_(space),
+        placement_(placement),
+        maps_(map_storeys(scene, space)),
+        panels_(lay_out_panels(maps_, space, placement)),
+        canvas_(panels_.size_px.x, panels_.size_px.y, kPaper),
+        places_(panels_.size_px) {
+    picture_.px_per_m = panels_.px_per_m;
+    picture_.lower_m = panels_.lower_m;
+    for (std::size_t s = 0; s < maps_.storeys.size(); ++s) {
+      picture_.panels.push_back({maps_.storeys[s].lowest_m, maps_.storeys[s].highest_m, panels_.boxes[s]});
+    }
+  }
+
+  PlanPicture draw() {
+    colours_ = choose_room_colours(maps_, space_.rooms.size());
+    draw_matter(maps_, panels_, colours_, canvas_, places_);
+    draw_titles();
+    draw_tour();
+    draw_portals();
+    const glm::dvec2 ahead(-std::sin(space_.start.yaw_rad), -std::cos(space_.start.yaw_rad));
+    const glm::dvec2 start = pixel(space_.start.position_m);
+    draw_start(canvas_, start, ahead);
+    note_disc(start, 7.0);
+    places_.note_line(start, start + 25.0 * ahead, LabelPlaces::kMark);
+    gather_probes();
+    const std::vector<std::string> names = drawable_names(space_);
+    const std::vector<RoomLabel> rooms = place_room_labels(maps_, panels_, names, places_);
+    number_probes();
+    for (const RoomLabel& label : rooms) note_room(label);
+    finish(names, rooms);
+    return std::move(picture_);
+  }
 
  private:
-  glm::dvec2 middle_m(const FloorNode& node) const {
-    return space_.floor.origin_m + space_.floor.cell_m * (glm::dvec2(node.ix, node.iz) + 0.5);
-  }
-  int storey_of(double floor_m) const {
-    // The highest that is not more than a step above: stairs belong to the storey that they leave.
-    int storey = 0;
-    for (std::size_t s = 1; s < storeys_.size(); ++s) storey = floor_m > storeys_[s] - 0.6 ? int(s) : storey;
-    return storey;
-  }
-  glm::ivec2 pixel(glm::dvec2 p_m, int storey) const {
-    return glm::ivec2(glm::floor((p_m - lower_m_) * px_per_m_)) + glm::ivec2(storey * panel_px_.x, 0);
-  }
-  void set(glm::ivec2 p, Colour colour) {
-    if (p.x < 0 || p.y < 0 || p.x >= picture_.width_px || p.y >= picture_.height_px) return;
-    std::copy(colour.begin(), colour.end(), picture_.rgb.begin() + 3 * (std::ptrdiff_t(p.y) * picture_.width_px + p.x));
-  }
-  void disc(glm::ivec2 centre, int radius, Colour colour, int inner = -1) {
-    for (int y = -radius; y <= radius; ++y) {
-      for (int x = -radius; x <= radius; ++x) {
-        const int d2 = x * x + y * y;
-        if (d2 <= radius * radius && d2 > inner * std::abs(inner)) set(centre + glm::ivec2(x, y), colour);
-      }
-    }
-  }
-  // To the right of a point, on a white ground, so that it reads over any room.
-  void number(glm::ivec2 at, std::size_t value) {
-    constexpr int kDot_px = 2;
-    const std::string text = std::to_string(value);
-    const glm::ivec2 corner = at + glm::ivec2(7, -5 * kDot_px / 2);
-    for (int y = -1; y <= 5 * kDot_px; ++y) {
-      for (int x = -1; x < 4 * kDot_px * int(text.size()); ++x) set(corner + glm::ivec2(x, y), {255, 255, 255});
-    }
-    for (int d = 0; d < int(text.size()); ++d) {
-      for (int dot = 0; dot < 15; ++dot) {
-        if (!(kDigits[std::size_t(text[std::size_t(d)] - '0')] >> (14 - dot) & 1)) continue;
-        for (int p = 0; p < kDot_px * kDot_px; ++p) {
-          const glm::ivec2 within(dot % 3 * kDot_px + p % kDot_px, dot / 3 * kDot_px + p / kDot_px);
-          set(corner + glm::ivec2(4 * kDot_px * d, 0) + within, kProbe);
-        }
-      }
-    }
-  }
-  void line(glm::ivec2 a, glm::ivec2 b, Colour colour, int radius) {
-    const int steps = std::max({1, std::abs(b.x - a.x), std::abs(b.y - a.y)});
-    for (int i = 0; i <= steps; ++i) disc(a + (b - a) * i / steps, radius, colour);
-  }
-  void fill() {
-    for (int s = 0; s < int(storeys_.size()); ++s) {
-      for (int y = 0; y < panel_px_.y; ++y) {
-        for (int x = 0; x + 1 < panel_px_.x; ++x) set({s * panel_px_.x + x, y}, kGround);
-      }
-    }
-    for (const FloorNode& node : space_.floor.nodes) {
-      const int storey = storey_of(node.floor_m);
-      const glm::dvec2 half(0.5 * space_.floor.cell_m);
-      const glm::ivec2 from = pixel(middle_m(node) - half, storey);
-      const glm::ivec2 to = pixel(middle_m(node) + half, storey);
-      for (int y = from.y; y <= to.y; ++y) {
-        for (int x = from.x; x <= to.x; ++x) set({x, y}, kRooms[node.room % kRooms.size()]);
-      }
-    }
-  }
-  void draw(const Placement& placement) {
-    for (const Portal& portal : space_.portals) {
-      const glm::dvec3 a = portal.polygon[0];
-      const glm::dvec3 b = portal.polygon[1];
-      const int storey = storey_of(std::min(a.y, b.y));
-      line(pixel({a.x, a.z}, storey), pixel({b.x, b.z}, storey), kPortal, 1);
-    }
-    for (std::size_t i = 1; i < space_.tour.size(); ++i) {
-      const glm::dvec3 a = space_.tour[i - 1].position_m;
-      const glm::dvec3 b = space_.tour[i].position_m;
-      const int storey = storey_of(0.5 * (a.y + b.y) - kEyeHeight_m);
-      line(pixel({a.x, a.z}, storey), pixel({b.x, b.z}, storey), kTour, 0);
-      if (i % 4 != 0) continue;  // where the head looks
-      const glm::dvec2 ahead(-std::sin(space_.tour[i].yaw_rad), -std::cos(space_.tour[i].yaw_rad));
-      line(pixel({b.x, b.z}, storey), pixel(glm::dvec2(b.x, b.z) + 0.2 * ahead, storey), kTour, 0);
-    }
-    for (std::size_t k = 0; k < placement.sites.size(); ++k) {
-      const ProbeSite& site = placement.sites[k];
-      const double floor_m = storeys_[storey_of(site.position_m.y - 0.3)];
-      const glm::ivec2 at = pixel({site.position_m.x, site.position_m.z}, storey_of(site.position_m.y - 0.3));
-      disc(at, 4, kProbe, site.position_m.y - floor_m < 1.25 ? 2 : -1);
-      if (px_per_m_ >= kLeastForNumbers_px_m) number(at, k);
-    }
-    const glm::dvec3 start = space_.start.position_m;
-    disc(pixel({start.x, start.z}, storey_of(start.y - kEyeHeight_m)), 5, kStart);
+  glm::dvec2 pixel(glm::dvec3 point_m) const { return panels_.pixel(maps_.storey_of(point_m), point_m); }
+  void note_disc(glm::dvec2 at, double radius_px) {
+    places_.note({glm::ivec2(glm::floor(at - radius_px)), glm::ivec2(glm::ceil(at + radius_px))}, LabelPlaces::kMark);
   }
 
+  void draw_titles() {
+    double floor_m2 = 0.0;
+    for (const double area : room_areas_m2(maps_, space_.rooms.size())) floor_m2 += area;
+    const auto counted = [](std::size_t count, const char* what) {
+      return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
+    };
+    std::string title = can_letter(scene_.name) && scene_.name.size() <= 40 && !scene_.name.empty() ? scene_.name + ": " : "";
+    title += fmt::format("{}, {:.0f} m\u00b2, {}", counted(space_.rooms.size(), "room"), floor_m2,
+                         counted(placement_.sites.size(), "probe"));
+    letter(canvas_, title, {kSheetMargin_px, kSheetMargin_px + kTitleLettering.cap_px}, kTitleLettering, kInk);
+    for (const PlanPanel& panel : picture_.panels) {
+      const glm::ivec2 corner = panel.box.lower;
+      letter(canvas_, heights(panel), corner - glm::ivec2(0, 8), kSmallLettering, kInk);
+      canvas_.rectangle(corner - 1, {panel.box.upper.x + 1, corner.y}, kFaint);
+      canvas_.rectangle({corner.x - 1, panel.box.upper.y}, panel.box.upper + 1, kFaint);
+      canvas_.rectangle(corner - 1, {corner.x, panel.box.upper.y + 1}, kFaint);
+      canvas_.rectangle({panel.box.upper.x, corner.y - 1}, panel.box.upper + 1, kFaint);
+    }
+  }
+
+  void draw_tour() {
+    double since_arrow_px = 0.5 * kArrows_px;
+    for (std::size_t i = 1; i < space_.tour.size(); ++i) {
+      const glm::dvec3 a_m = space_.tour[i - 1].position_m, b_m = space_.tour[i].position_m;
+      if (a_m == b_m) continue;
+      tour_m_ += glm::distance(a_m, b_m);
+      const std::size_t from = maps_.storey_of(a_m), to = maps_.storey_of(b_m);
+      for (const std::size_t storey : {from, to}) {
+        const glm::dvec2 a = panels_.pixel(storey, a_m), b = panels_.pixel(storey, b_m);
+        canvas_.stroke(a, b, 1.6, kTour);
+        places_.note_line(a, b, LabelPlaces::kLine);
+        if (from == to) break;
+      }
+      const glm::dvec2 a = panels_.pixel(from, a_m), b = panels_.pixel(from, b_m);
+      const double length_px = glm::distance(a, b);
+      since_arrow_px += length_px;
+      if (since_arrow_px < kArrows_px || length_px < 1e-3) continue;
+      since_arrow_px = 0.0;
+      draw_tour_arrow(canvas_, b, (b - a) / length_px);
+    }
+  }
+
+  void draw_portals() {
+    for (const Portal& portal : space_.portals) {
+      // The lowest edge is its line on the floor.
+      const std::vector<glm::dvec3>& corners = portal.polygon;
+      if (corners.size() < 2) continue;
+      glm::dvec3 a_m = corners[0], b_m = corners[1];
+      double lowest_m = 0.5 * (a_m.y + b_m.y);
+      for (std::size_t k = 1; k < corners.size(); ++k) {
+        const glm::dvec3 c = corners[k], d = corners[(k + 1) % corners.size()];
+        if (0.5 * (c.y + d.y) >= lowest_m) continue;
+        lowest_m = 0.5 * (c.y + d.y);
+        a_m = c;
+        b_m = d;
+      }
+      const std::size_t storey = maps_.storey_of(0.5 * (a_m + b_m) + glm::dvec3(0.0, 0.5, 0.0));
+      const glm::dvec2 a = panels_.pixel(storey, a_m), b = panels_.pixel(storey, b_m);
+      portal.drop ? draw_drop_line(canvas_, a, b) : draw_portal_line(canvas_, a, b);
+      places_.note_line(a, b, LabelPlaces::kDark);
+    }
+  }
+
+  struct ProbesAt {
+    std::size_t storey = 0;
+    glm::dvec2 at{0.0};
+    std::vector<std::size_t> sites;
+  };
+
+  bool is_low(const ProbeSite& site, std::size_t storey) const {
+    const glm::dvec2 cell = glm::floor((glm::dvec2(site.position_m.x, site.position_m.z) - maps_.origin_m) / maps_.cell_m);
+    double floor_m = maps_.storeys[storey].floor_m;
+    if (cell.x >= 0.0 && cell.y >= 0.0 && cell.x < maps_.columns.x && cell.y < maps_.columns.y) {
+      const PlanCell& under = maps_.at(storey, int(cell.x), int(cell.y));
+      if (under.matter != PlanMatter::kNothing) floor_m = under.floor_m;
+    }
+    return site.position_m.y - floor_m < kLowProbe_m;
+  }
+
+  void gather_probes() {
+    for (std::size_t k = 0; k < placement_.sites.size(); ++k) {
+      const ProbeSite& site = placement_.sites[k];
+      const std::size_t storey = maps_.storey_of(site.position_m);
+      const glm::dvec2 at = panels_.pixel(storey, site.position_m);
+      const bool low = is_low(site, storey);
+      has_low_ |= low;
+      has_high_ |= !low;
+      draw_probe(canvas_, at, low);
+      note_disc(at, kLowProbe_px);
+      probes_over(storey, at).sites.push_back(k);
+    }
+  }
+
+  // Those that stand at the same place of the plan.
+  ProbesAt& probes_over(std::size_t storey, glm::dvec2 at) {
+    const glm::ivec2 square(glm::floor(at / kSamePlace_px));
+    for (int dy = -1; dy <= 1; ++dy) {
+      for (int dx = -1; dx <= 1; ++dx) {
+        const auto known = probes_in_.find({storey, square.x + dx, square.y + dy});
+        if (known == probes_in_.end()) continue;
+        if (glm::distance(probes_[known->second].at, at) < kSamePlace_px) return probes_[known->second];
+      }
+    }
+    probes_in_[{storey, square.x, square.y}] = probes_.size();
+    return probes_.emplace_back(ProbesAt{storey, at, {}});
+  }
+
+  void number_probes() {
+    const double panels_px = double(maps_.storeys.size()) * glm::dvec2(panels_.boxes[0].upper - panels_.boxes[0].lower).x *
+                             glm::dvec2(panels_.boxes[0].upper - panels_.boxes[0].lower).y;
+    const double number_px = 30.0 * 14.0;
+    if (double(probes_.size()) * number_px > kMostNumbers * panels_px) {
+      numbers_left_out_ = placement_.sites.size();
+      return;
+    }
+    for (const ProbesAt& probes : probes_) {
+      std::string text;
+      for (const std::size_t k : probes.sites) text += (text.empty() ? "" : "/") + std::to_string(k);
+      const glm::ivec2 size_px(text_width_px(text, kSmallLettering) + 4, kSmallLettering.cap_px + 4);
+      const auto box = places_.take_beside(probes.at, kLowProbe_px, size_px, kNumberFar_px, panels_.boxes[probes.storey]);
+      if (!box) {
+        numbers_left_out_ += probes.sites.size();
+        continue;
+      }
+      const glm::dvec2 nearest = glm::clamp(probes.at, glm::dvec2(box->lower), glm::dvec2(box->upper));
+      if (glm::distance(nearest, probes.at) > kLowProbe_px + 10.0) canvas_.stroke(probes.at, nearest, 0.9, kProbe);
+      letter(canvas_, text, {box->lower.x + 2, box->upper.y - 2}, kSmallLettering, kInk, &kPaper);
+      picture_.labels.push_back({PlanLabel::Of::kProbes, text, probes.sites[0], *box});
+    }
+  }
+
+  void note_room(const RoomLabel& label) {
+    draw_room_label(label, colours_[label.room], canvas_);
+    std::string text;
+    for (std::size_t k = 0; k + label.has_area < label.lines.size(); ++k) text += (k ? " " : "") + label.lines[k];
+    picture_.labels.push_back(
+        {label.is_number ? PlanLabel::Of::kRoomNumber : PlanLabel::Of::kRoom, text, label.room, label.box});
+  }
+
+  bool has(PlanMatter matter) const {
+    return std::any_of(maps_.storeys.begin(), maps_.storeys.end(), [&](const StoreyMap& storey) {
+      return std::any_of(storey.cells.begin(), storey.cells.end(), [&](const PlanCell& c) { return c.matter == matter; });
+    });
+  }
+
+  void add_matter(Legend& legend, PlanMatter matter, const char* text, Colour fill, Colour edge) const {
+    if (!has(matter)) return;
+    legend.signs.push_back({text, [fill, edge](Canvas& canvas, glm::dvec2 at) {
+                              const glm::ivec2 middle(at);
+                              canvas.rectangle(middle - glm::ivec2(14, 6), middle + glm::ivec2(14, 6), edge);
+                              canvas.rectangle(middle - glm::ivec2(14, 4), middle + glm::ivec2(14, 4), fill);
+                            }});
+  }
+
+  Legend make_legend(const std::vector<std::string>& names, const std::vector<RoomLabel>& rooms) const {
+    Legend legend;
+    legend.px_per_m = panels_.px_per_m;
+    add_matter(legend, PlanMatter::kWall, "wall", kWall, kWall);
+    add_matter(legend, PlanMatter::kWindow, "window", kPane, kPaneEdge);
+    add_matter(legend, PlanMatter::kCupboard, "higher than the eyes", kCupboard, kCupboard);
+    add_matter(legend, PlanMatter::kFurniture, "furniture", mixed(kFaint, kCupboard, 0.2), kCupboard);
+    const auto drops = std::ranges::count_if(space_.portals, [](const Portal& portal) { return portal.drop; });
+    if (std::size_t(drops) < space_.portals.size()) {
+      legend.signs.push_back({"portal between rooms", [](Canvas& canvas, glm::dvec2 at) {
+                                draw_portal_line(canvas, at - glm::dvec2(13, 0), at + glm::dvec2(13, 0));
+                              }});
+    }
+    if (drops > 0) {
+      legend.signs.push_back({"drop: a room below is seen", [](Canvas& canvas, glm::dvec2 at) {
+                                draw_drop_line(canvas, at - glm::dvec2(14, 0), at + glm::dvec2(14, 0));
+                              }});
+    }
+    if (tour_m_ > 0.0) {
+      legend.signs.push_back({fmt::format("tour, {:.0f} m", tour_m_), [](Canvas& canvas, glm::dvec2 at) {
+                                canvas.stroke(at - glm::dvec2(14, 0), at + glm::dvec2(14, 0), 1.6, kTour);
+                                draw_tour_arrow(canvas, at, {1.0, 0.0});
+                              }});
+    }
+    legend.signs.push_back({"start, and where it looks", [](Canvas& canvas, glm::dvec2 at) {
+                              draw_start(canvas, at - glm::dvec2(10, 0), {1.0, 0.0});
+                            }});
+    const std::string left_out = numbers_left_out_ == 0 ? "" : fmt::format(" ({} have no room for theirs)", numbers_left_out_);
+    const auto sign = [](bool low) {
+      return [low](Canvas& canvas, glm::dvec2 at) { draw_probe(canvas, at, low); };
+    };
+    const std::string numbered = " and its number in the pack" + left_out;
+    const std::string lower = fmt::format("probe lower than {} m", kLowProbe_m);
+    if (has_high_) legend.signs.push_back({"probe" + numbered, sign(false)});
+    if (has_low_) legend.signs.push_back({has_high_ ? lower : lower + numbered, sign(true)});
+    std::set<std::size_t> explained;
+    for (const RoomLabel& label : rooms) {
+      if (!label.is_number) continue;
+      RoomLabel number = label;
+      number.outside = false;
+      const auto draw = [number](Canvas& canvas, glm::dvec2 at) mutable {
+        const glm::ivec2 half = (number.box.upper - number.box.lower) / 2;
+        number.box = {glm::ivec2(at) - half, glm::ivec2(at) + half + 1};
+        draw_room_label(number, kPaper, canvas);
+      };
+      if (explained.insert(label.room).second) legend.rooms.push_back({names[label.room], draw});
+    }
+    return legend;
+  }
+
+  void finish(const std::vector<std::string>& names, const std::vector<RoomLabel>& rooms) {
+    const Legend legend = make_legend(names, rooms);
+    for (const LegendEntry& entry : legend.signs) picture_.legend.push_back(entry.text);
+    for (const LegendEntry& entry : legend.rooms) picture_.legend.push_back(entry.text);
+    const ImageRgb8 below = draw_legend(legend, panels_.size_px.x).take();
+    picture_.image = canvas_.take();
+    picture_.image.height_px += below.height_px;
+    picture_.image.rgb.insert(picture_.image.rgb.end(), below.rgb.begin(), below.rgb.end());
+  }
+
+  const Scene& scene_;
   const Space& space_;
-  std::vector<double> storeys_;
-  glm::dvec2 lower_m_{0.0};
-  double px_per_m_ = 1.0;
-  glm::ivec2 panel_px_{0};
-  ImageRgb8 picture_;
+  const Placement& placement_;
+  const StoreyMaps maps_;
+  const Panels panels_;
+  Canvas canvas_;
+  LabelPlaces places_;
+  PlanPicture picture_;
+  std::vector<Colour> colours_;
+  std::vector<ProbesAt> probes_;
+  std::map<std::tuple<std::size_t, int, int>, std::size_t> probes_in_;  // by storey and square of the sheet
+  double tour_m_ = 0.0;
+  std::size_t numbers_left_out_ = 0;
+  bool has_low_ = false, has_high_ = false;
 };
 
 }  // namespace
 
-ImageRgb8 draw_plan(const Space& space, const Placement& placement) { return Plan(space, placement).take(); }
+PlanPicture draw_plan(const Scene& scene, const Space& space, const Placement& placement) {
+  return PlanDrawing(scene, space, placement).draw();
+}
 
 }  // namespace probewalk
