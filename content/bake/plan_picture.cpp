@@ -37,8 +37,8 @@ void draw_portal_line(Canvas& canvas, glm::dvec2 a, glm::dvec2 b) {
   canvas.stroke(b - side, b + side, 1.4, kPortal);
 }
 
-// Dashed, as what lies above or below the cut.
-void draw_drop_line(Canvas& canvas, glm::dvec2 a, glm::dvec2 b) { canvas.dashes(a, b, 2.2, 6.0, kPortal); }
+// Dashed: one does not go there.
+void draw_outlook(Canvas& canvas, glm::dvec2 a, glm::dvec2 b) { canvas.dashes(a, b, 2.2, 6.0, kPortal); }
 
 void draw_tour_arrow(Canvas& canvas, glm::dvec2 at, glm::dvec2 ahead) {
   const glm::dvec2 side(-ahead.y, ahead.x);
@@ -171,7 +171,7 @@ class PlanDrawing {
       }
       const std::size_t storey = maps_.storey_of(0.5 * (a_m + b_m) + glm::dvec3(0.0, 0.5, 0.0));
       const glm::dvec2 a = panels_.pixel(storey, a_m), b = panels_.pixel(storey, b_m);
-      portal.drop ? draw_drop_line(canvas_, a, b) : draw_portal_line(canvas_, a, b);
+      portal.walked ? draw_portal_line(canvas_, a, b) : draw_outlook(canvas_, a, b);
       places_.note_line(a, b, LabelPlaces::kDark);
     }
   }
@@ -274,15 +274,23 @@ class PlanDrawing {
     add_matter(legend, PlanMatter::kWindow, "window", kPane, kPaneEdge);
     add_matter(legend, PlanMatter::kCupboard, "higher than the eyes", kCupboard, kCupboard);
     add_matter(legend, PlanMatter::kFurniture, "furniture", mixed(kFaint, kCupboard, 0.2), kCupboard);
-    const auto drops = std::ranges::count_if(space_.portals, [](const Portal& portal) { return portal.drop; });
-    if (std::size_t(drops) < space_.portals.size()) {
+    if (has(PlanMatter::kVoid)) {
+      legend.signs.push_back({"open to below", [](Canvas& canvas, glm::dvec2 at) {
+                                for (int k = -1; k <= 1; ++k) {
+                                  const glm::dvec2 middle = at + glm::dvec2(8.0 * k, 0.0);
+                                  canvas.stroke(middle + glm::dvec2(-5, 5), middle + glm::dvec2(5, -5), 1.0, kFaint);
+                                }
+                              }});
+    }
+    const auto is_walked = [](const Portal& portal) { return portal.walked; };
+    if (std::ranges::any_of(space_.portals, is_walked)) {
       legend.signs.push_back({"portal between rooms", [](Canvas& canvas, glm::dvec2 at) {
                                 draw_portal_line(canvas, at - glm::dvec2(13, 0), at + glm::dvec2(13, 0));
                               }});
     }
-    if (drops > 0) {
-      legend.signs.push_back({"drop: a room below is seen", [](Canvas& canvas, glm::dvec2 at) {
-                                draw_drop_line(canvas, at - glm::dvec2(14, 0), at + glm::dvec2(14, 0));
+    if (!std::ranges::all_of(space_.portals, is_walked)) {
+      legend.signs.push_back({"portal that is only seen through", [](Canvas& canvas, glm::dvec2 at) {
+                                draw_outlook(canvas, at - glm::dvec2(14, 0), at + glm::dvec2(14, 0));
                               }});
     }
     if (tour_m_ > 0.0) {

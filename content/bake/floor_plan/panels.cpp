@@ -6,6 +6,8 @@
 #include <numeric>
 #include <set>
 
+#include "content/scene/space/floor_graph.h"
+
 namespace probewalk {
 namespace {
 
@@ -15,6 +17,8 @@ constexpr double kLongest_px = 6000.0;  // of all panels side by side
 constexpr int kLeastWidth_px = 720;     // the legend needs it
 constexpr double kMargin_m = 0.4;
 constexpr double kFarthest_m = 1e7;  // from the origin: what is farther is not on the plan
+constexpr double kStep_least_m = 0.08;  // what is lower is a threshold
+constexpr int kHatch_px = 9;            // between the lines over a void
 constexpr double kWallBetween_m = 0.6;  // rooms nearer than this to each other meet
 
 // Light, so that lines and letters read on them, and as far from each other as that allows.
@@ -146,7 +150,8 @@ class MatterPainter {
     using namespace plan_colour;
     switch (cell.matter) {
       case PlanMatter::kNothing: return kPaper;
-      case PlanMatter::kFloor: return colours_[cell.room];
+      case PlanMatter::kVoid: return kPaper;
+      case PlanMatter::kFloor: return is_step(cell) ? mixed(colours_[cell.room], kInk, 0.3) : colours_[cell.room];
       case PlanMatter::kFurniture: return mixed(colours_[cell.room], kCupboard, is_edge(false) ? 0.9 : 0.45);
       case PlanMatter::kCupboard: return kCupboard;
       case PlanMatter::kWindow: return is_edge(true) ? kPaneEdge : kPane;
@@ -156,6 +161,19 @@ class MatterPainter {
   }
 
  private:
+  // Whether the floor rises or falls beside the cell found last, as at the edge of a step.
+  bool is_step(const PlanCell& cell) const {
+    const double least_m = std::max(kStep_least_m, 0.9 * maps_.cell_m);
+    for (const glm::ivec2 step : {glm::ivec2(1, 0), glm::ivec2(0, 1)}) {
+      const glm::ivec2 p = at_ + step;
+      if (p.x >= maps_.columns.x || p.y >= maps_.columns.y) continue;
+      const PlanCell& beside = maps_.at(storey_, p.x, p.y);
+      const double rise_m = std::abs(double(beside.floor_m) - cell.floor_m);
+      if (beside.matter == PlanMatter::kFloor && rise_m > least_m && rise_m < kStep_m + 0.01) return true;
+    }
+    return false;
+  }
+
   // Whether the cell found last lies beside floor, or nothing; a window's beside its walls is none.
   bool is_edge(bool window) const {
     for (const glm::ivec2 step : {glm::ivec2(1, 0), glm::ivec2(-1, 0), glm::ivec2(0, 1), glm::ivec2(0, -1)}) {
@@ -191,6 +209,10 @@ void draw_matter(const StoreyMaps& maps, const Panels& panels, const std::vector
         const int x0 = cell_at(x - box.lower.x, 0), x1 = std::max(x0 + 1, cell_at(x + 1 - box.lower.x, 0));
         const PlanCell* cell = painter.top({x0, z0}, {x1, z1});
         if (!cell || cell->matter == PlanMatter::kNothing) continue;
+        if (cell->matter == PlanMatter::kVoid) {
+          if ((x + y) % kHatch_px == 0) canvas.set({x, y}, plan_colour::kFaint);
+          continue;
+        }
         canvas.set({x, y}, painter.colour(*cell));
         if (cell->matter == PlanMatter::kWall) places.note({{x, y}, {x + 1, y + 1}}, LabelPlaces::kDark);
       }

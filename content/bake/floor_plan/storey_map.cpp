@@ -26,6 +26,7 @@ constexpr float kShoulder_m = 1.4f, kCrown_m = 1.8f;  // as rooms are told apart
 constexpr float kTall_m = 2.3f;                       // what is cut by the eyes and higher than this is a wall
 constexpr float kSillFoot_m = 0.2f, kSill_m = 0.5f;   // a wall below a window has matter between
 constexpr float kLintel_m = 0.15f;                    // and over it something this high hangs from the ceiling
+constexpr double kVoid_m = 4.0;                       // how far over a storey below its edge is followed
 constexpr double kInWalls_m = 0.6;                    // how deep walls are looked into
 constexpr double kThickest_m = 1.2;                   // between two faces of one wall
 
@@ -100,8 +101,9 @@ bool is_solid(PlanMatter matter) { return matter >= PlanMatter::kCupboard; }
 // Fills one storey's cells from its nodes outwards.
 class StoreyBuilder {
  public:
-  StoreyBuilder(const FloorMap& floor, const ColumnSpans& spans)
-      : floor_(floor), spans_(spans), cells_(std::size_t(floor.columns.x) * floor.columns.y), ceiling_m_(cells_.size()) {}
+  // `under`: the columns in which a lower storey has floor.
+  StoreyBuilder(const FloorMap& floor, const ColumnSpans& spans, const std::vector<bool>& under)
+      : floor_(floor), spans_(spans), under_(under), cells_(std::size_t(floor.columns.x) * floor.columns.y), ceiling_m_(cells_.size()) {}
 
   void add(const FloorNode& node) {  // ascending in height within a column: from above, the highest is seen
     const std::size_t c = index(node.ix, node.iz);
@@ -112,6 +114,7 @@ class StoreyBuilder {
 
   std::vector<PlanCell> build() {
     lean_over_furniture();
+    look_over_edges();
     look_into_walls();
     close_walls();
     return std::move(cells_);
@@ -148,6 +151,16 @@ class StoreyBuilder {
       const PlanMatter matter = matter_of(spans_.column(at.x, at.y), cells_[from].floor_m, ceiling_m_[from]);
       if (matter == PlanMatter::kNothing || is_solid(matter)) return false;
       cells_[to] = {matter, cells_[from].room, cells_[from].floor_m};
+      ceiling_m_[to] = ceiling_m_[from];
+      return true;
+    });
+  }
+
+  void look_over_edges() {
+    spread(kVoid_m, [&](std::size_t to, std::size_t from, glm::ivec2 at) {
+      if (cells_[to].matter != PlanMatter::kNothing || !under_[to]) return false;
+      if (matter_of(spans_.column(at.x, at.y), cells_[from].floor_m, ceiling_m_[from]) != PlanMatter::kNothing) return false;
+      cells_[to] = {PlanMatter::kVoid, cells_[from].room, cells_[from].floor_m};
       ceiling_m_[to] = ceiling_m_[from];
       return true;
     });
@@ -205,6 +218,7 @@ class StoreyBuilder {
 
   const FloorMap& floor_;
   const ColumnSpans& spans_;
+  const std::vector<bool>& under_;
   std::vector<PlanCell> cells_;
   std::vector<float> ceiling_m_;
   std::vector<bool> seen_;
@@ -243,13 +257,17 @@ StoreyMaps map_storeys(const Scene& scene, const Space& space) {
   const std::vector<std::size_t> storey_of_level = group_levels(floor, levels);
   std::vector<std::size_t> area(levels.size(), 0);
   for (const FloorNode& node : floor.nodes) ++area[level_of(levels, node.floor_m)];
+  std::vector<bool> under(std::size_t(floor.columns.x) * floor.columns.y, false);
   for (std::size_t s = 0; s <= storey_of_level.back(); ++s) {
-    StoreyBuilder builder(floor, spans);
+    StoreyBuilder builder(floor, spans, under);
     for (const FloorNode& node : floor.nodes) {
       if (storey_of_level[level_of(levels, node.floor_m)] == s) builder.add(node);
     }
     StoreyMap& storey = maps.storeys.emplace_back();
     storey.cells = builder.build();
+    for (std::size_t c = 0; c < storey.cells.size(); ++c) {
+      under[c] = under[c] || storey.cells[c].matter == PlanMatter::kFloor || storey.cells[c].matter == PlanMatter::kFurniture;
+    }
     storey.lowest_m = HUGE_VAL;
     storey.highest_m = -HUGE_VAL;
     std::size_t most = 0;
@@ -272,7 +290,7 @@ std::size_t StoreyMaps::storey_of(glm::dvec3 point_m) const {
   if (cell.x >= 0.0 && cell.y >= 0.0 && cell.x < columns.x && cell.y < columns.y) {
     for (std::size_t s = 0; s < storeys.size(); ++s) {
       const PlanCell& at_cell = at(s, int(cell.x), int(cell.y));
-      if (at_cell.matter != PlanMatter::kNothing && at_cell.floor_m <= point_m.y - kOver_m) found = s;
+      if (at_cell.matter > PlanMatter::kVoid && at_cell.floor_m <= point_m.y - kOver_m) found = s;
     }
   }
   if (found < storeys.size()) return found;

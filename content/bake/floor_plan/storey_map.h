@@ -13,6 +13,7 @@ namespace probewalk {
 
 enum class PlanMatter : std::uint8_t {
   kNothing,    // not part of the storey
+  kVoid,       // open to a storey below
   kFloor,      // one can stand there, or could if one got there
   kFurniture,  // ends below the shoulder
   kCupboard,   // higher than the eyes, but not a wall
