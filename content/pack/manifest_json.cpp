@@ -5,7 +5,7 @@
 //   features [name], radiance_scale, exposure_ev, rooms [{id, name, bounds, origin_m, first_probe, probe_count,
 //           levels [{chunk, geometry_size, radiance_size, bytes_disk, bytes_device, error (null = not measured),
 //           bytes_tiled (absent = not stated), quantised (absent = false)}]}],
-//   portals [{rooms [a, b], polygon [[x, y, z]]}], probe_positions_m [[x, y, z]],
+//   portals [{rooms [a, b], polygon [[x, y, z]], walked (absent = true)}], probe_positions_m [[x, y, z]],
 //   grid {origin_m, spacing_m, dims, probe [index]},
 //   floor {origin_m [x, z], cell_m, columns [x, z], node_count, nodes (text, floor_code.h)},
 //   start and tour [pose], warnings [text]
@@ -75,7 +75,9 @@ json to_json(const RoomEntry& room) {
 }
 
 json to_json(const Portal& portal) {
-  return {{"rooms", {portal.room_a, portal.room_b}}, {"polygon", to_json(portal.polygon)}};
+  json entry{{"rooms", {portal.room_a, portal.room_b}}, {"polygon", to_json(portal.polygon)}};
+  if (!portal.walked) entry["walked"] = false;
+  return entry;
 }
 
 json to_json(const ProbeGrid& grid) {
@@ -228,6 +230,7 @@ Portal read_portal(const Member& m) {
   portal.room_b = rooms[1];
   m["polygon"].each(3, PackLimits::kPortalCorners,
                     [&](const Member& corner) { portal.polygon.push_back(corner.vector()); });
+  if (m.has("walked")) portal.walked = m["walked"].boolean();
   return portal;
 }
 

@@ -53,7 +53,7 @@ struct RoomRegion {
 struct Portal {
   int room_a = 0, room_b = 0;       // indices into Space::rooms
   std::vector<glm::dvec3> polygon;  // planar, convex, metres
-  bool drop = false;                // seen through and not walked: room_a's floor ends there, high over room_b's
+  bool walked = true;               // else only seen through: over a rail, a counter, an edge to a floor farther down
 };
 
 struct Space {

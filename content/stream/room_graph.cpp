@@ -46,6 +46,8 @@ RoomGraph::RoomGraph(std::span<const RoomEntry> rooms, std::span<const Portal> p
     door.first_corner = static_cast<std::uint32_t>(corners_m_.size());
     door.corners = static_cast<std::uint32_t>(portal.polygon.size());
     door.portal = index++;
+    door.walked = portal.walked;
+    all_walked_ = all_walked_ && portal.walked;
     for (const glm::dvec3& corner : portal.polygon) {
       corners_m_.push_back(corner);
       door.middle_m += corner / static_cast<double>(portal.polygon.size());
@@ -70,8 +72,22 @@ std::uint32_t RoomGraph::room_of(const glm::dvec3& point_m, std::int64_t previou
   return left || deep_inside ? found : old_room;
 }
 
+// A room that is only seen into is as near as one behind a door; but nobody arrives there that way.
 std::vector<RoomGraph::Reach> RoomGraph::reach(std::uint32_t room, const glm::dvec3& point_m,
                                                std::uint32_t most_portals, const glm::dvec3& velocity_m_s) const {
+  std::vector<Reach> found = ways(room, point_m, most_portals, velocity_m_s, false);
+  if (all_walked_) return found;
+  std::vector<Reach> walked = ways(room, point_m, most_portals, velocity_m_s, true);
+  std::ranges::sort(walked, {}, &Reach::room);
+  for (Reach& reach : found) {
+    const auto way = std::ranges::lower_bound(walked, reach.room, {}, &Reach::room);
+    reach.arrival_s = way != walked.end() && way->room == reach.room ? way->arrival_s : HUGE_VAL;
+  }
+  return found;
+}
+
+std::vector<RoomGraph::Reach> RoomGraph::ways(std::uint32_t room, const glm::dvec3& point_m, std::uint32_t most_portals,
+                                              const glm::dvec3& velocity_m_s, bool walked_only) const {
   struct Way {
     Reach reach;
     glm::dvec3 at_m;
@@ -83,6 +99,7 @@ std::vector<RoomGraph::Reach> RoomGraph::reach(std::uint32_t room, const glm::dv
     next.clear();
     for (const Way& way : ring) {
       for (const Door& door : doors(way.reach.room)) {
+        if (walked_only && !door.walked) continue;
         const glm::dvec3 step_m = door.middle_m - way.at_m;
         const double length_m = glm::length(step_m);
         const double along_m_s = length_m > kLeastLength_m ? glm::dot(velocity_m_s, step_m) / length_m : 0.0;

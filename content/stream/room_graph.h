@@ -27,7 +27,9 @@ class RoomGraph {
     std::uint32_t room = 0;
     std::uint32_t portals = 0;  // fewest portals between
     double distance_m = 0.0;    // shortest way through the portals' middles, from the point
-    double arrival_s = 0.0;     // when a walker may be there, by the quickest of these ways
+    // When a walker may be there, by the quickest of the ways through fewest portals that are walked; infinity where
+    // there is none within as many portals as were asked for.
+    double arrival_s = 0.0;
   };
   // Rooms within `most_portals` of `room`, itself first, by number of portals, then distance, then index. A walker goes
   // at `kIdleSpeed_m_s` plus what of `velocity_m_s` leads along the way, at least kLeastSpeed_m_s.
@@ -51,11 +53,15 @@ class RoomGraph {
   static constexpr std::uint32_t kSeenPortals = 6;
 
  private:
+  std::vector<Reach> ways(std::uint32_t room, const glm::dvec3& point_m, std::uint32_t most_portals,
+                          const glm::dvec3& velocity_m_s, bool walked_only) const;
+
   struct Door {
     std::uint32_t to = 0;
     glm::dvec3 middle_m{0.0};
     std::uint32_t first_corner = 0, corners = 0;
     std::uint32_t portal = 0;
+    bool walked = true;
   };
   // Directions within an angle of an axis, or all of them. Angles are kept as cosine and sine: a frame asks for many.
   struct Cone {
@@ -76,6 +82,7 @@ class RoomGraph {
   std::vector<std::uint32_t> first_door_;  // of each room, and the end
   std::vector<Door> doors_;
   std::vector<glm::dvec3> corners_m_;
+  bool all_walked_ = true;
 };
 
 }  // namespace probewalk

@@ -35,6 +35,7 @@ class Walk {
     walk_.step_s = step_s;
     doors_.resize(manifest.rooms.size());
     for (const Portal& portal : manifest.portals) {
+      if (!portal.walked) continue;
       glm::dvec3 middle_m(0.0);
       for (const glm::dvec3& corner : portal.polygon) middle_m += corner / static_cast<double>(portal.polygon.size());
       double floor_m = middle_m.y;

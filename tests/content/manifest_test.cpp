@@ -71,6 +71,18 @@ TEST(Manifest, RoundTripKeepsEverything) {
   EXPECT_EQ(back.bytes_device(), 1600u + 3200u + 1600u);
 }
 
+TEST(Manifest, PortalsThatAreNotWalkedAreNamedAndNothingIsSaidOfOthers) {
+  Manifest m = two_rooms();
+  ASSERT_FALSE(m.portals.empty());
+  EXPECT_FALSE(json::parse(serialise_manifest(m))["portals"][0].contains("walked"));
+  m.portals.push_back(m.portals[0]);
+  m.portals[1].walked = false;
+  const Manifest back = parse_manifest(serialise_manifest(m), "pack.json");
+  EXPECT_TRUE(back.portals[0].walked);
+  EXPECT_FALSE(back.portals[1].walked);
+  EXPECT_THAT(refusal_with("/portals/0/walked", 1), HasSubstr("portals[0].walked is neither true nor false"));
+}
+
 TEST(Manifest, OddNumbersSurviveTheText) {
   Manifest m = two_rooms();
   m.scale = 0.1;

@@ -174,6 +174,54 @@ TEST(RoomGraph, ReachesThroughPortalsNearestFirst) {
   EXPECT_EQ(graph.reach(0, {1.0, 1.0, 2.0}, 3).size(), 4u);
 }
 
+// A gallery over the last of five rooms in a row; the way up begins in the first.
+Manifest row_under_a_gallery() {
+  Manifest m = row_of_rooms(5);
+  RoomEntry gallery = m.rooms[0];
+  gallery.id = "gallery";
+  gallery.bounds = {{16.0, 3.0, 4.0}, {20.0, 6.0, 6.0}};
+  m.rooms.push_back(gallery);
+  m.portals.push_back({0, 5, {{0, 0, 4}, {1, 0, 4}, {1, 2, 4}, {0, 2, 4}}});
+  m.portals.push_back({5, 4, {{16, 3, 4}, {20, 3, 4}, {20, 6, 4}, {16, 6, 4}}, false});
+  return m;
+}
+
+TEST(RoomGraph, ADropIsSeenThroughFromBothSidesAndNobodyArrivesByIt) {
+  const Manifest m = row_under_a_gallery();
+  const RoomGraph graph(m.rooms, m.portals);
+  const auto sees = [&](std::uint32_t room, glm::dvec3 from, glm::dvec3 look, std::uint32_t other) {
+    const auto seen = graph.seen(room, from, look);
+    const auto found = std::ranges::find(seen, other, &RoomGraph::Seen::room);
+    return found != seen.end() && found->in_view && found->share > 0.1;
+  };
+  EXPECT_TRUE(sees(5, {18, 4.6, 5}, {0, 0, -1}, 4)) << "from the rail";
+  EXPECT_TRUE(sees(4, {18, 1.6, 2}, glm::normalize(glm::dvec3(0, 1, 1)), 5)) << "up to it";
+  const auto reach = graph.reach(5, {18, 4.6, 5}, 3);
+  const auto below = std::ranges::find(reach, 4u, &RoomGraph::Reach::room);
+  ASSERT_NE(below, reach.end());
+  EXPECT_EQ(below->portals, 1u);
+  EXPECT_TRUE(std::isinf(below->arrival_s)) << "the way there is five doors long";
+  const auto first = std::ranges::find(reach, 0u, &RoomGraph::Reach::room);
+  ASSERT_NE(first, reach.end());
+  EXPECT_LT(first->arrival_s, 60.0);
+  for (const RoomGraph::Reach& r : graph.reach(5, {18, 4.6, 5}, 5)) EXPECT_FALSE(std::isinf(r.arrival_s)) << r.room;
+}
+
+TEST(Residency, WhatLiesBelowAGalleryIsLoadedForWhoLooksDown) {
+  const Manifest m = row_under_a_gallery();
+  ResidencyOptions options;
+  options.budget_bytes = 5 * kCoarse + 2 * kFine;
+  Simulation there(m, options);
+  const Walker looks_down{{18, 4.6, 4.5}, {0.0, 0.0, 0.0}, glm::normalize(glm::dvec3(0, -1, -1))};
+  for (int k = 0; k < 60; ++k) there.step(looks_down);
+  EXPECT_TRUE(there.resident(4, 2));
+  Manifest without = m;
+  without.portals.pop_back();
+  Simulation blind(without, options);
+  for (int k = 0; k < 60; ++k) blind.step(looks_down);
+  EXPECT_FALSE(blind.resident(4, 2)) << "or this test shows nothing";
+}
+
 TEST(Residency, ASmallBuildingIsWhollyResidentAtItsCoarsest) {
   const Manifest m = row_of_rooms(8);
   Simulation s(m, {});

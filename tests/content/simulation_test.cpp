@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <set>
 
 #include "content/error.h"
 #include "content/stream/simulated_site.h"
@@ -55,6 +56,22 @@ TEST(SimulatedSite, JoinsAsManyRoomsAsAsked) {
     EXPECT_EQ(reached.size(), rooms) << "every room can be walked to";
   }
   EXPECT_THROW(site_of_rooms(Manifest{}, 3), std::logic_error);
+}
+
+TEST(SimulatedWalk, NobodyFallsOverADrop) {
+  Manifest site = site_of_rooms(model_pack(), 2);
+  site.portals.resize(1);
+  const auto rooms_walked = [&] {
+    std::set<std::uint32_t> rooms;
+    const RoomGraph graph(site.rooms, site.portals);
+    for (const WalkStep& step : random_walk(site, WalkKind::kWander, 5, 120.0, 0.1).steps) {
+      rooms.insert(graph.room_of(step.head_m, -1, 0.0));
+    }
+    return rooms.size();
+  };
+  EXPECT_EQ(rooms_walked(), 2u) << "or this test shows nothing";
+  site.portals[0].walked = false;
+  EXPECT_EQ(rooms_walked(), 1u);
 }
 
 TEST(Simulation, NoPolicyIsEverOverTheBudgetWhateverTheSourceAndTheWalk) {

@@ -75,6 +75,7 @@ json portals_of(const Manifest& manifest, int room) {
     for (const glm::dvec3& corner : portal.polygon) polygon.push_back(to_json(corner));
     const int other = portal.room_a == room ? portal.room_b : portal.room_a;
     portals.push_back({{"to", manifest.rooms[static_cast<std::size_t>(other)].id}, {"polygon", polygon}});
+    if (!portal.walked) portals.back()["walked"] = false;
   }
   return portals;
 }
@@ -190,8 +191,8 @@ void print_room(const Manifest& manifest, std::size_t index) {
   std::vector<std::string> neighbours;
   for (const Portal& portal : manifest.portals) {
     const auto a = static_cast<std::size_t>(portal.room_a), b = static_cast<std::size_t>(portal.room_b);
-    if (a == index) neighbours.push_back(manifest.rooms[b].id);
-    if (b == index) neighbours.push_back(manifest.rooms[a].id);
+    if (a == index) neighbours.push_back(manifest.rooms[b].id + (portal.walked ? "" : " (seen)"));
+    if (b == index) neighbours.push_back(manifest.rooms[a].id + (portal.walked ? "" : " (seen)"));
   }
   const glm::dvec3 size_m = room.bounds.upper_m - room.bounds.lower_m;
   fmt::print("  {:<20} {}: {:.1f} x {:.1f} x {:.1f} m, {} probe{}, portals to {}\n", room.id, printable(room.name),
@@ -225,7 +226,9 @@ void print(const Pack& pack) {
   line("exposure", fmt::format("{:.2f} EV", m.exposure_ev));
   line("start", fmt::format("({}), yaw {:.0f} degrees", point_text(m.start.position_m), glm::degrees(m.start.yaw_rad)));
   line("tour", fmt::format("{:.1f} m, {} poses", tour_length_m(m), m.tour.size()));
-  line("rooms", fmt::format("{}, joined by {} portal{}", m.rooms.size(), m.portals.size(), m.portals.size() == 1 ? "" : "s"));
+  const auto seen = std::ranges::count_if(m.portals, [](const Portal& portal) { return !portal.walked; });
+  line("rooms", fmt::format("{}, joined by {} portal{}{}", m.rooms.size(), m.portals.size(), m.portals.size() == 1 ? "" : "s",
+                            seen == 0 ? "" : fmt::format(", {} of them seen through and not walked", seen)));
   for (std::size_t k = 0; k < m.rooms.size(); ++k) print_room(m, k);
   for (const std::string& warning : m.warnings) line("warning", printable(warning));
 }

@@ -7,6 +7,7 @@
 #include "content/error.h"
 #include "content/scene/space.h"
 #include "content/scene/space/column_spans.h"
+#include "content/scene/space/drop_portals.h"
 #include "content/scene/space/floor_graph.h"
 #include "content/scene/space/head_map.h"
 #include "content/scene/space/parts.h"
@@ -188,7 +189,8 @@ Space find_space(const Scene& scene, const RayScene& rays, const SpaceOptions& o
     if (heads.floor_place[i] >= 0) room[heads.floor_place[i]] = found.room[i];
   }
   fill_floor_map(graph, room, space.floor);
-  space.portals = find_portals(heads.graph, found.room);
+  space.portals = find_portals(heads, found.room);
+  for (Portal& drop : find_drops(heads, floors.spans, found.room)) space.portals.push_back(std::move(drop));
   progress.advance(1);
 
   const WalkGround ground{graph, parts[kept.front()].places, room};

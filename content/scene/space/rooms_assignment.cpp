@@ -3,93 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
 #include <utility>
 
+#include "content/scene/space/portal_runs.h"
 #include "content/scene/space/room_outline.h"
 
 namespace probewalk {
-namespace {
-
-constexpr double kNarrowest_m = 0.4;
-constexpr double kHighest_m = 4.0;
-constexpr int kGap_cells = 2;   // pieces of border at most this far apart are one opening
-constexpr double kGap_m = 1.0;  // and this far in height
-
-// One side of a column where two rooms meet.
-struct BorderSide {
-  glm::ivec2 middle;  // in half columns
-  double floor_m;
-  double ceiling_m;
-};
-
-// Union of sides that lie close together; sides are found by the column that they border on.
-std::vector<std::vector<BorderSide>> cluster(const std::vector<BorderSide>& sides) {
-  std::vector<std::size_t> parent(sides.size());
-  std::iota(parent.begin(), parent.end(), std::size_t(0));
-  const auto root = [&](std::size_t i) {
-    while (parent[i] != i) i = parent[i] = parent[parent[i]];
-    return i;
-  };
-  std::multimap<std::pair<int, int>, std::size_t> at;
-  for (std::size_t i = 0; i < sides.size(); ++i) at.emplace(std::pair(sides[i].middle.y, sides[i].middle.x), i);
-  for (std::size_t i = 0; i < sides.size(); ++i) {
-    for (int dz = 0; dz <= 2 * kGap_cells; ++dz) {
-      const int z = sides[i].middle.y + dz;
-      const auto begin = at.lower_bound({z, sides[i].middle.x - 2 * kGap_cells});
-      const auto end = at.upper_bound({z, sides[i].middle.x + 2 * kGap_cells});
-      for (auto j = begin; j != end; ++j) {
-        if (std::abs(sides[j->second].floor_m - sides[i].floor_m) >= kGap_m) continue;
-        const std::size_t a = root(i);
-        const std::size_t b = root(j->second);
-        parent[std::max(a, b)] = std::min(a, b);
-      }
-    }
-  }
-  std::map<std::size_t, std::vector<BorderSide>> clusters;
-  for (std::size_t i = 0; i < sides.size(); ++i) clusters[root(i)].push_back(sides[i]);
-  std::vector<std::vector<BorderSide>> out;
-  for (auto& [first, members] : clusters) out.push_back(std::move(members));
-  return out;
-}
-
-std::size_t farthest_from(const std::vector<BorderSide>& sides, glm::ivec2 point) {
-  std::size_t farthest = 0;
-  double most = -1.0;
-  for (std::size_t i = 0; i < sides.size(); ++i) {
-    const double distance = glm::length(glm::dvec2(sides[i].middle - point));
-    if (distance > most) {
-      most = distance;
-      farthest = i;
-    }
-  }
-  return farthest;
-}
-
-// The rectangle over the line between the two ends of a run of sides; empty when too narrow.
-std::vector<glm::dvec3> rectangle(const FloorGraph& graph, const std::vector<BorderSide>& run) {
-  const BorderSide& a = run[farthest_from(run, run.front().middle)];
-  const BorderSide& b = run[farthest_from(run, a.middle)];
-  const auto plan_m = [&](const BorderSide& side) {
-    return graph.origin_m + graph.cell_m * (0.5 * glm::dvec2(side.middle) + 0.5);
-  };
-  glm::dvec2 from = plan_m(a);
-  glm::dvec2 to = plan_m(b);
-  const double between_m = glm::distance(from, to);
-  if (between_m + graph.cell_m < kNarrowest_m) return {};
-  const glm::dvec2 half_side = 0.5 * graph.cell_m * (to - from) / between_m;
-  from -= half_side;
-  to += half_side;
-  double floor_m = HUGE_VAL, ceiling_m = HUGE_VAL;
-  for (const BorderSide& side : run) {
-    floor_m = std::min(floor_m, side.floor_m);
-    ceiling_m = std::min(ceiling_m, side.ceiling_m);
-  }
-  const double top_m = std::clamp(ceiling_m, floor_m + kHeadroom_m, floor_m + kHighest_m);
-  return {{from.x, floor_m, from.y}, {to.x, floor_m, to.y}, {to.x, top_m, to.y}, {from.x, top_m, from.y}};
-}
-
-}  // namespace
 
 std::vector<RoomRegion> list_rooms(const Scene& scene) {
   std::vector<RoomRegion> rooms;
@@ -121,7 +40,8 @@ int room_at(const std::vector<RoomRegion>& rooms, glm::dvec3 foot_m) {
   return nearest;
 }
 
-std::vector<Portal> find_portals(const FloorGraph& graph, const std::vector<std::int32_t>& room) {
+std::vector<Portal> find_portals(const HeadMap& heads, const std::vector<std::int32_t>& room) {
+  const FloorGraph& graph = heads.graph;
   std::map<std::pair<int, int>, std::vector<BorderSide>> borders;
   for (std::size_t i = 0; i < graph.places.size(); ++i) {
     if (room[i] < 0) continue;
@@ -132,14 +52,19 @@ std::vector<Portal> find_portals(const FloorGraph& graph, const std::vector<std:
       const StandingPlace& b = graph.places[j];
       borders[std::minmax(room[i], room[j])].push_back({{2 * a.ix + kLinkX[k], 2 * a.iz + kLinkZ[k]},
                                                          std::min(a.floor_m, b.floor_m),
-                                                         std::min(a.ceiling_m, b.ceiling_m)});
+                                                         std::min(a.ceiling_m, b.ceiling_m),
+                                                         heads.floor_place[i] >= 0 && heads.floor_place[j] >= 0});
     }
   }
   std::vector<Portal> portals;
   for (const auto& [pair, sides] : borders) {
-    for (const std::vector<BorderSide>& run : cluster(sides)) {
-      std::vector<glm::dvec3> polygon = rectangle(graph, run);
-      if (!polygon.empty()) portals.push_back({pair.first, pair.second, std::move(polygon)});
+    for (const std::vector<BorderSide>& run : gather_runs(sides)) {
+      for (const std::vector<BorderSide>& piece : straight_pieces(graph, run)) {
+        for (const std::vector<BorderSide>& part : parted_by_walking(graph, piece)) {
+          std::vector<glm::dvec3> polygon = upright_rectangle(graph, part);
+          if (!polygon.empty()) portals.push_back({pair.first, pair.second, std::move(polygon), part.front().walked});
+        }
+      }
     }
   }
   return portals;
