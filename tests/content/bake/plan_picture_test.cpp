@@ -151,7 +151,7 @@ TEST(PlanPicture, ShowsTheHousesWallsWhereTheyAre) {
   EXPECT_NEAR(house().plan.panels[1].lowest_m, 3.0, 0.11);
   int wall = 0, dark = 0, doorway = 0, dark_doorway = 0;
   for (std::size_t storey = 0; storey < 2; ++storey) {
-    const double eye_m = storey * procedural::kUpperFloor_m + 1.6;
+    const double eye_m = double(storey) * procedural::kUpperFloor_m + 1.6;
     for (const procedural::PlanWall& w : known.walls) {
       if (eye_m < w.bottom_m || eye_m > w.top_m) continue;
       for (double along = std::max(0.3, w.from_m + 0.2); along < std::min(w.along_z ? 8.7 : 11.7, w.to_m - 0.2); along += 0.1) {
