@@ -185,6 +185,13 @@ void OpenXrSource::on_session_change(XrSessionState next) {
   }
 }
 
+// The origin will jump: the rig is placed anew then, so that the view does not.
+void OpenXrSource::on_space_change(const XrEventDataReferenceSpaceChangePending& change) {
+  if (change.session != session_.get() || change.referenceSpaceType != space_type_) return;
+  space_changes_at_.push_back(change.changeTime);
+  for (ShownPose& shown : shown_) shown.space_changed = shown.space_changed || shown.time >= change.changeTime;
+}
+
 SourceState OpenXrSource::poll() {
   while (state_.source_state() != SourceState::kLost) {
     XrEventDataBuffer event{XR_TYPE_EVENT_DATA_BUFFER};
@@ -198,14 +205,9 @@ SourceState OpenXrSource::poll() {
         spdlog::warn("the OpenXR runtime is going away");
         state_.on_lost();
         break;
-      case XR_TYPE_EVENT_DATA_REFERENCE_SPACE_CHANGE_PENDING: {
-        // The origin will jump: the rig is placed anew then, so that the view does not.
-        const auto& change = reinterpret_cast<const XrEventDataReferenceSpaceChangePending&>(event);
-        if (change.session == session_.get() && change.referenceSpaceType == space_type_) {
-          space_changes_at_ = change.changeTime;
-        }
+      case XR_TYPE_EVENT_DATA_REFERENCE_SPACE_CHANGE_PENDING:
+        on_space_change(reinterpret_cast<const XrEventDataReferenceSpaceChangePending&>(event));
         break;
-      }
       case XR_TYPE_EVENT_DATA_VISIBILITY_MASK_CHANGED_KHR:
         masks_are_new_ = true;
         break;
@@ -329,10 +331,9 @@ std::vector<ViewPose> OpenXrSource::locate(const FrameTiming& timing, ViewPose* 
 void OpenXrSource::move(double dt_s, XrTime time) {
   if (!head_ || !rig_placed_) return;
   const HeadPose head = in_rig(*head_);
-  if (space_changes_at_ != 0 && time >= space_changes_at_) {
+  if (std::erase_if(space_changes_at_, [&](XrTime at) { return at <= time; }) > 0) {
     anchor_ = locomotion_.anchor(head);
     rig_placed_ = false;
-    space_changes_at_ = 0;
     return;
   }
   MoveInput input;
@@ -440,6 +441,10 @@ std::vector<PoseError> OpenXrSource::take_pose_errors() {
     shown_.pop_front();
     if (now_ns() - pose.predicted_display_ns > kPoseHistory_ns) {
       errors.push_back({.predicted_display_ns = pose.predicted_display_ns, .answer = PoseAnswer::kTooLate});
+      continue;
+    }
+    if (pose.space_changed) {
+      errors.push_back({.predicted_display_ns = pose.predicted_display_ns, .answer = PoseAnswer::kRefused});
       continue;
     }
     ++asked;

@@ -73,6 +73,7 @@ class OpenXrSource final : public FrameSource {
     std::int64_t predicted_display_ns = 0;
     glm::dvec3 position_m{0.0};
     glm::dquat orientation{1.0, 0.0, 0.0, 0.0};
+    bool space_changed = false;  // since: what the runtime says now does not compare
   };
   // The frame under way.
   struct Frame {
@@ -92,6 +93,7 @@ class OpenXrSource final : public FrameSource {
   // Whether an image of it is held now; else the display is lost.
   bool acquire(OpenXrSwapchain& swapchain);
   void on_session_change(XrSessionState next);
+  void on_space_change(const XrEventDataReferenceSpaceChangePending& change);
   // Empty: no valid pose for that time, or the runtime is gone.
   std::vector<XrView> locate_views(XrTime time);
   [[nodiscard]] std::unique_lock<std::mutex> lock_queue();
@@ -129,8 +131,8 @@ class OpenXrSource final : public FrameSource {
 
   std::uint32_t view_count_ = 0;
   Frame frame_;
-  std::optional<Head> head_;  // of the last valid views, whichever frame's
-  XrTime space_changes_at_ = 0;
+  std::optional<Head> head_;              // of the last valid views, whichever frame's
+  std::vector<XrTime> space_changes_at_;  // announced and not yet come; any time is one, 0 as well: at once
   bool warned_of_time_ = false;
   bool masks_are_new_ = true;
   bool rig_placed_ = false;
