@@ -56,6 +56,8 @@ WalkLeg::WalkLeg(const WalkOptions& options, const Pack& pack, const Display& di
   settings_.trace = default_dials(pack.manifest().radiance_scale);
   settings_.exposure = exposure_from_ev(static_cast<float>(options.exposure_ev.value_or(pack.manifest().exposure_ev)));
   settings_.depth = depth_range_of(pack.manifest().bounds);
+  // As near to the wearer whatever their size: for who is a tenth as tall, half a centimetre of the scene.
+  settings_.depth.near_m *= static_cast<float>(options.display.locomotion.world_scale);
   source_.set_depth_range(settings_.depth);
   pipelines_built_ = display_.device->pipelines_built();
   if (display.mirror && display.mirror->shown() == ShownEyes::kSpectator) {
