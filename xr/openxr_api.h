@@ -23,6 +23,12 @@ inline bool means_lost(XrResult result) {
          result == XR_SESSION_LOSS_PENDING || result == XR_ERROR_RUNTIME_UNAVAILABLE;
 }
 
+// What came of a call, and its name for a message.
+struct OpenXrOutcome {
+  XrResult result = XR_SUCCESS;
+  const char* call = "";
+};
+
 // Owns a handle; destroyed in the reverse order of the members that hold it.
 template <typename Handle, XrResult(XRAPI_PTR* kDestroy)(Handle)>
 class XrOwned {

@@ -114,54 +114,55 @@ void OpenXrInput::note_controllers(XrSession session) {
 }
 
 bool OpenXrInput::read(XrSession session, HandAction which, const Hand& hand, XrActionStateBoolean& state,
-                       XrResult& result) const {
+                       OpenXrOutcome& outcome) const {
   XrActionStateGetInfo query{XR_TYPE_ACTION_STATE_GET_INFO};
   query.action = action(which);
   query.subactionPath = hand.path;
   state = {XR_TYPE_ACTION_STATE_BOOLEAN};
-  result = xrGetActionStateBoolean(session, &query, &state);
-  return XR_SUCCEEDED(result);
+  outcome = {xrGetActionStateBoolean(session, &query, &state), "xrGetActionStateBoolean"};
+  return XR_SUCCEEDED(outcome.result);
 }
 
 bool OpenXrInput::read_stick(XrSession session, HandAction which, const Hand& hand, glm::dvec2& stick,
-                             XrResult& result) const {
+                             OpenXrOutcome& outcome) const {
   XrActionStateGetInfo query{XR_TYPE_ACTION_STATE_GET_INFO};
   query.action = action(which);
   query.subactionPath = hand.path;
   XrActionStateVector2f state{XR_TYPE_ACTION_STATE_VECTOR2F};
-  result = xrGetActionStateVector2f(session, &query, &state);
-  if (XR_FAILED(result)) return false;
+  outcome = {xrGetActionStateVector2f(session, &query, &state), "xrGetActionStateVector2f"};
+  if (XR_FAILED(outcome.result)) return false;
   if (!state.isActive) return true;
   // A pad counts only while it is pressed; what has no pad has no such action.
   XrActionStateBoolean pressed;
-  if (!read(session, HandAction::kPadPressed, hand, pressed, result)) return false;
+  if (!read(session, HandAction::kPadPressed, hand, pressed, outcome)) return false;
   if (!pressed.isActive || pressed.currentState) stick += glm::dvec2(state.currentState.x, state.currentState.y);
   return true;
 }
 
-MoveInput OpenXrInput::poll(XrSession session, XrSpace space, XrTime time, XrResult& result) {
+MoveInput OpenXrInput::poll(XrSession session, XrSpace space, XrTime time, OpenXrOutcome& outcome) {
   MoveInput input;
   const XrActiveActionSet active{set_.get(), XR_NULL_PATH};
   XrActionsSyncInfo sync{XR_TYPE_ACTIONS_SYNC_INFO};
   sync.countActiveActionSets = 1;
   sync.activeActionSets = &active;
-  result = xrSyncActions(session, &sync);
-  if (result != XR_SUCCESS) return input;  // lost, or the focus went away meanwhile
+  outcome = {xrSyncActions(session, &sync), "xrSyncActions"};
+  if (outcome.result != XR_SUCCESS) return input;  // lost, or the focus went away meanwhile
   glm::dvec2 turn{0.0};
   bool menu_down = false;
   for (const Hand& hand : hands_) {
     XrActionStateBoolean teleport, recentre;
-    if (!read(session, HandAction::kTeleport, hand, teleport, result) ||
-        !read(session, HandAction::kRecentre, hand, recentre, result) ||
-        !read_stick(session, HandAction::kMove, hand, input.wish, result) ||
-        !read_stick(session, HandAction::kTurn, hand, turn, result)) {
+    if (!read(session, HandAction::kTeleport, hand, teleport, outcome) ||
+        !read(session, HandAction::kRecentre, hand, recentre, outcome) ||
+        !read_stick(session, HandAction::kMove, hand, input.wish, outcome) ||
+        !read_stick(session, HandAction::kTurn, hand, turn, outcome)) {
       return {};
     }
     menu_down = menu_down || (recentre.isActive && recentre.currentState);
     const bool let_go = teleport.isActive && teleport.changedSinceLastSync && !teleport.currentState;
     if (!(teleport.isActive && teleport.currentState) && !let_go) continue;
     XrSpaceLocation aim{XR_TYPE_SPACE_LOCATION};
-    if (result = xrLocateSpace(hand.aim.get(), space, time, &aim); XR_FAILED(result)) return {};
+    outcome = {xrLocateSpace(hand.aim.get(), space, time, &aim), "xrLocateSpace"};
+    if (XR_FAILED(outcome.result)) return {};
     constexpr XrSpaceLocationFlags kValid =
         XR_SPACE_LOCATION_POSITION_VALID_BIT | XR_SPACE_LOCATION_ORIENTATION_VALID_BIT;
     if ((aim.locationFlags & kValid) != kValid) continue;

@@ -26,8 +26,9 @@ class OpenXrInput {
   // when the runtime is gone.
   void note_controllers(XrSession session);
 
-  // To be called once a frame while the session is focused. The ray lies in `space`. A lost session shows in `result`.
-  MoveInput poll(XrSession session, XrSpace space, XrTime time, XrResult& result);
+  // To be called once a frame while the session is focused. The ray lies in `space`. `outcome` receives the
+  // first call that failed, which tells of a lost session.
+  MoveInput poll(XrSession session, XrSpace space, XrTime time, OpenXrOutcome& outcome);
   // Whether the wearer has held the button since the last call that recentres when it is pressed shortly.
   bool take_overlay_request() { return std::exchange(wants_overlay_, false); }
 
@@ -39,8 +40,10 @@ class OpenXrInput {
   };
   XrAction action(HandAction which) const { return actions_[static_cast<std::size_t>(which)]; }
   void suggest(const InteractionProfile& profile);
-  bool read(XrSession session, HandAction which, const Hand& hand, XrActionStateBoolean& state, XrResult& result) const;
-  bool read_stick(XrSession session, HandAction which, const Hand& hand, glm::dvec2& stick, XrResult& result) const;
+  bool read(XrSession session, HandAction which, const Hand& hand, XrActionStateBoolean& state,
+            OpenXrOutcome& outcome) const;
+  bool read_stick(XrSession session, HandAction which, const Hand& hand, glm::dvec2& stick,
+                  OpenXrOutcome& outcome) const;
 
   const OpenXrInstance& instance_;
   XrOwned<XrActionSet, xrDestroyActionSet> set_;

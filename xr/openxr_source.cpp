@@ -338,9 +338,9 @@ void OpenXrSource::move(double dt_s, XrTime time) {
   }
   MoveInput input;
   if (state_.focused()) {
-    XrResult result = XR_SUCCESS;
-    input = input_->poll(session_.get(), space_.get(), time, result);
-    if (result != XR_ERROR_TIME_INVALID && !alive(result, "xrSyncActions")) return;
+    OpenXrOutcome outcome;
+    input = input_->poll(session_.get(), space_.get(), time, outcome);
+    if (outcome.result != XR_ERROR_TIME_INVALID && !alive(outcome.result, outcome.call)) return;
   }
   locomotion_.advance(head, input, dt_s);
   if (input_->take_overlay_request() && overlay_board_ != nullptr) overlay_board_->toggle(OverlayPlace::kHeadset);

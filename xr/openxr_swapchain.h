@@ -16,12 +16,6 @@ struct OpenXrSwapchainOptions {
   std::uint32_t layers = 0;
 };
 
-// What came of a call, and its name for a message.
-struct OpenXrOutcome {
-  XrResult result = XR_SUCCESS;
-  const char* call = "";
-};
-
 class OpenXrSwapchain {
  public:
   // Throws NoDevice when the runtime refuses.

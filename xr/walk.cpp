@@ -171,7 +171,8 @@ LegEnd Walk::walk_leg() {
   const LegEnd end = leg.run();
   // A headset may have changed on the way: its refresh rate is its runtime's.
   if (books_.info.display_changes.empty()) books_.info.display_details = display_->source->description();
-  if (end == LegEnd::kLost) books_.left_ns = now_ns();
+  // A display that was lost before its first picture never ended the time without one.
+  if (end == LegEnd::kLost && !books_.left_ns) books_.left_ns = now_ns();
   leg.finish();
   return end;
 }

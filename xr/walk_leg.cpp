@@ -144,7 +144,8 @@ bool WalkLeg::frame() {
     spectator_->follow(*books_.head, timing.predicted_display_ns);
     spectator_->show(*display_.mirror, renderer_, settings_, guides(), record);
   }
-  if (drawn != 0 && books_.left_ns) note_arrival();
+  const auto outcome = source_.outcome();
+  if (drawn != 0 && (!outcome || outcome->shown) && books_.left_ns) note_arrival();
   if (keeps_books_) book(record, drawn);
   if (books_.frames) progress_.advance(1);
   ++books_.frame;

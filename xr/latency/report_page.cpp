@@ -194,8 +194,10 @@ const std::vector<Fact>& facts() {
        [](const Run& r, const Summary&) {
          std::string text;
          for (const DisplayChange& change : r.info.display_changes) {
-           text += fmt::format("{}frame {}: {} to {} ({}), {} ms without a picture", text.empty() ? "" : "; ",
-                               change.frame, change.from, change.to, change.reason, in_ms(change.gap_ns));
+           text += fmt::format("{}frame {}: {} to {} ({}), {}", text.empty() ? "" : "; ", change.frame, change.from,
+                               change.to, change.reason,
+                               change.gap_ns > 0 ? fmt::format("{} ms without a picture", in_ms(change.gap_ns))
+                                                 : "left again before its first picture");
          }
          return text;
        }},
