@@ -2,6 +2,7 @@
 #pragma once
 
 #include <pthread.h>
+#include <sched.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -18,6 +19,9 @@ inline void name_this_thread(const std::string& name) {
 // it waits for a slice of ours. Not allowed or not known here = as it is.
 inline void give_way_to_frames() {
   constexpr int kNice = 5;
+  // Whoever hands such a thread work would lose the core to it for a slice: one that is woken as a batch waits.
+  const sched_param none{};
+  sched_setscheduler(static_cast<pid_t>(gettid()), SCHED_BATCH, &none);
   setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), kNice);
 }
 

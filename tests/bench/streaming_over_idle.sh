@@ -59,8 +59,8 @@ if [ -z "$walk" ]; then
 fi
 length=$(tail -n 1 "$walk" | sed 's/.*"t_s": *\([0-9.]*\).*/\1/')
 awk -v seconds="$compared" '
-  { line = $0; match(line, /"t_s": *[0-9.eE+-]+/); t = substr(line, RSTART + 6, RLENGTH - 6); sub(/^ */, "", t)
-    if (t > seconds) next
+  { line = $0; match(line, /"t_s": *[0-9.eE+-]+/); t = substr(line, RSTART + 6, RLENGTH - 6) + 0
+    if (t > seconds + 0) next
     lines[n] = line; times[n] = t; ++n; print line }
   END { for (k = 0; k < n; ++k) { line = lines[k]
     sub(/"t_s": *[0-9.eE+-]+/, "\"t_s\":" (times[k] + times[n - 1] + 0.02), line); print line } }' "$walk" >"$out/twice.jsonl"
