@@ -326,7 +326,8 @@ class PlanDrawing {
   }
 
   void finish(const std::vector<std::string>& names, const std::vector<RoomLabel>& rooms) {
-    const Legend legend = make_legend(names, rooms);
+    Legend legend = make_legend(names, rooms);
+    leave_out_rooms(legend, panels_.size_px.x);
     for (const LegendEntry& entry : legend.signs) picture_.legend.push_back(entry.text);
     for (const LegendEntry& entry : legend.rooms) picture_.legend.push_back(entry.text);
     const ImageRgb8 below = draw_legend(legend, panels_.size_px.x).take();

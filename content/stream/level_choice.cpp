@@ -35,8 +35,8 @@ class Chooser {
     for (std::size_t k = 1; k < rooms_.size(); ++k) {
       if (!rooms_[k].is_kept) continue;
       const int shown = book_.shown(rooms_[k].room);
-      if (shown > static_cast<int>(level_[k]) && fits(k, static_cast<std::uint32_t>(shown)))
-        take(k, static_cast<std::uint32_t>(shown));
+      if (shown <= static_cast<int>(level_[k])) continue;
+      if (const auto level = static_cast<std::uint32_t>(shown); fits(k, level)) take(k, level);
     }
   }
 
@@ -63,14 +63,16 @@ class Chooser {
     bool operator<(const Step& other) const { return std::tuple(density, other.k) < std::tuple(other.density, k); }
   };
 
+  // What a room in view shows stays until the other level has come in: till then both take their bytes. The walker's own
+  // room and the next have no time to wait for such space.
   std::uint64_t bytes(std::size_t k, std::uint32_t level) const {
     if (level == 0) return 0;
-    const std::uint64_t own = book_.bytes({rooms_[k].room, level});
-    if (k == 0 || rooms_[k].is_next || !rooms_[k].is_kept ||
-        book_.status({rooms_[k].room, level}) == LevelStatus::kResident)
-      return own;
-    const int shown = book_.shown(rooms_[k].room);
-    return shown > 0 ? own + book_.bytes({rooms_[k].room, static_cast<std::uint32_t>(shown)}) : own;
+    const RoomWorth& room = rooms_[k];
+    const std::uint64_t own = book_.bytes({room.room, level});
+    const bool shows_on = k > 0 && room.is_kept && !room.is_next;
+    if (!shows_on || book_.status({room.room, level}) == LevelStatus::kResident) return own;
+    const int shown = book_.shown(room.room);
+    return shown > 0 ? own + book_.bytes({room.room, static_cast<std::uint32_t>(shown)}) : own;
   }
 
   double gain(std::size_t k, std::uint32_t level) const {

@@ -13,8 +13,8 @@ struct RoomWorth {
   std::uint32_t room = 0;
   double weight = 0.0;   // of an octave of its detail
   bool is_fine = false;  // worth more than its coarsest level
-  bool is_kept = false;  // what it shows stays before anything else is added, and until another level has come in for it
-  bool is_next = false;  // entered soon: has its finest level that fits, whatever the others beside the first would do with it
+  bool is_kept = false;  // what it shows stays before anything else is added, until another level has come in for it
+  bool is_next = false;  // entered soon: its finest level that fits, whatever others but the first would do with it
 };
 
 // The level of each of `rooms`, 0 = no more than its coarsest, whose bytes have been paid for; the others together take

@@ -1,8 +1,8 @@
 // Which rooms should be on the device, and at which level: the product's policy. Rules:
 //  - the coarsest level of every room within three portals of the walker's, and of every room in sight, is always
-//  wanted,
-//    so that no room is black (beyond three portals only where the walker's own room and the next lose nothing by it);
-//    of all rooms where the building is small;
+//    wanted, so that no room is black (beyond three portals only where the walker's own room and the next lose nothing
+//    by it); of all rooms where the building is small. That of a room that a teleport is aimed at likewise, of those
+//    around it where they take nothing of what is shown in view;
 //  - the rest of the budget goes to finer levels by benefit per byte: octaves of detail, times how much of the view the
 //    room fills or how soon the walker may be there, over the bytes that it takes. The walker's own room is weighed
 //    against all others together, so that its size does not rob it of its detail;

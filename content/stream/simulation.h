@@ -38,9 +38,9 @@ struct SimulationResult {
   // Octaves of detail that the view lacks against every room's finest level, averaged over directions and time; a room
   // with nothing to show lacks kHoleOctaves more than at its coarsest.
   double missing_octaves = 0.0;
-  std::size_t hole_steps = 0;    // the walker's room had nothing to show
+  std::size_t hole_steps = 0;       // the walker's room had nothing to show
   std::size_t dark_view_steps = 0;  // some room in view had nothing to show
-  std::size_t coarse_steps = 0;  // it showed less than the finest level that the policy wanted then
+  std::size_t coarse_steps = 0;     // the walker's room showed less than the finest level that the policy wanted then
   std::size_t coarse_run_max = 0;
   std::size_t over_budget_steps = 0;  // must be 0
   std::uint64_t held_bytes_max = 0;

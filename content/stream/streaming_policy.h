@@ -41,7 +41,8 @@ class StreamingPolicy {
 
 // Carries out what is wanted within the budget, for every policy alike: what to load now, and what goes for it.
 // Resident, loading and not yet freed bytes together never exceed the budget. What is not wanted goes only to make
-// space, what was wanted longest ago first, what a room in view shows last of all. Costs as much as what is wanted, however much is resident.
+// space, what was wanted longest ago first, what a room in view shows last of all. Costs as much as what is wanted,
+// however much is resident.
 class ResidencyPlanner {
  public:
   ResidencyPlanner(std::uint64_t budget_bytes, std::uint32_t most_loads)

@@ -116,8 +116,8 @@ struct Hooked<kName, kHook> {
   }
 };
 template <CallName kName, auto kHook>
-void add_hook(Hooks& hooks) {
-  hooks[kName.text] = reinterpret_cast<PFN_xrVoidFunction>(Hooked<kName, kHook>::call);
+Hooks::value_type hook() {
+  return {kName.text, reinterpret_cast<PFN_xrVoidFunction>(Hooked<kName, kHook>::call)};
 }
 
 // The runtime's own call unless the script wants it to fail.
@@ -131,8 +131,8 @@ struct Passed<kName, XrResult (*)(Arguments...)> {
   }
 };
 template <CallName kName, typename Function>
-void pass(Hooks& hooks) {
-  hooks[kName.text] = reinterpret_cast<PFN_xrVoidFunction>(Passed<kName, Function>::call);
+Hooks::value_type pass() {
+  return {kName.text, reinterpret_cast<PFN_xrVoidFunction>(Passed<kName, Function>::call)};
 }
 
 }  // namespace probewalk::test

@@ -1,9 +1,8 @@
 // Frames behind the scripted layer: a wearer who does as told, and a book of what is handed to xrEndFrame.
 //   jump=FRAME:SPACE:METRES:AHEAD_MS,...  announces that SPACE changes, AHEAD_MS after the frame's display time (0:
-//   with
-//                                         a changeTime of 0, as soon as the event is taken), and from that time on
-//                                         answers poses METRES further along x. Where SPACE is not the application's
-//                                         own, it sees a wearer who steps aside
+//                                         with a changeTime of 0, as soon as the event is taken), and from that time
+//                                         on answers poses METRES further along x. Where SPACE is not the
+//                                         application's own, it sees a wearer who steps aside
 //   step=FRAME:METRES,...                 the wearer steps aside in that frame, unannounced
 //   still=1                               the head stays where it was first located
 //   late_m=X                              the kth locate of a frame is answered k * X metres further along x
@@ -193,13 +192,11 @@ void begin_frame_book() {
 }
 
 Hooks frame_hooks() {
-  Hooks hooks;
-  add_hook<"xrWaitFrame", wait_frame>(hooks);
-  add_hook<"xrBeginFrame", begin_frame>(hooks);
-  add_hook<"xrLocateViews", locate_views>(hooks);
-  add_hook<"xrEndFrame", end_frame>(hooks);
-  add_hook<"xrCreateSwapchain", create_swapchain>(hooks);
-  return hooks;
+  return {hook<"xrWaitFrame", wait_frame>(),
+          hook<"xrBeginFrame", begin_frame>(),
+          hook<"xrLocateViews", locate_views>(),
+          hook<"xrEndFrame", end_frame>(),
+          hook<"xrCreateSwapchain", create_swapchain>()};
 }
 
 }  // namespace probewalk::test

@@ -139,15 +139,13 @@ XRAPI_ATTR XrResult XRAPI_CALL locate_space(XrSpace space, XrSpace base, XrTime 
 }  // namespace
 
 Hooks hand_hooks() {
-  Hooks hooks;
-  add_hook<"xrSuggestInteractionProfileBindings", suggest>(hooks);
-  add_hook<"xrGetCurrentInteractionProfile", current_profile>(hooks);
-  add_hook<"xrSyncActions", sync_actions>(hooks);
-  add_hook<"xrGetActionStateBoolean", get_boolean>(hooks);
-  add_hook<"xrGetActionStateVector2f", get_stick>(hooks);
-  add_hook<"xrCreateActionSpace", create_action_space>(hooks);
-  add_hook<"xrLocateSpace", locate_space>(hooks);
-  return hooks;
+  return {hook<"xrSuggestInteractionProfileBindings", suggest>(),
+          hook<"xrGetCurrentInteractionProfile", current_profile>(),
+          hook<"xrSyncActions", sync_actions>(),
+          hook<"xrGetActionStateBoolean", get_boolean>(),
+          hook<"xrGetActionStateVector2f", get_stick>(),
+          hook<"xrCreateActionSpace", create_action_space>(),
+          hook<"xrLocateSpace", locate_space>()};
 }
 
 }  // namespace probewalk::test

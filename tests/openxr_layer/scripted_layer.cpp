@@ -222,21 +222,20 @@ XRAPI_ATTR XrResult XRAPI_CALL poll_event(XrInstance instance, XrEventDataBuffer
 }
 
 Hooks all_hooks() {
-  Hooks hooks;
+  Hooks hooks{hook<"xrCreateSession", create_session>(),
+              hook<"xrEnumerateReferenceSpaces", enumerate_spaces>(),
+              hook<"xrCreateReferenceSpace", create_space>(),
+              hook<"xrPollEvent", poll_event>(),
+              {"xrDestroySession", reinterpret_cast<PFN_xrVoidFunction>(destroy_session)},
+              pass<"xrGetSystem", PFN_xrGetSystem>(),
+              pass<"xrBeginSession", PFN_xrBeginSession>(),
+              pass<"xrEndSession", PFN_xrEndSession>(),
+              pass<"xrRequestExitSession", PFN_xrRequestExitSession>(),
+              pass<"xrAttachSessionActionSets", PFN_xrAttachSessionActionSets>(),
+              pass<"xrAcquireSwapchainImage", PFN_xrAcquireSwapchainImage>(),
+              pass<"xrWaitSwapchainImage", PFN_xrWaitSwapchainImage>(),
+              pass<"xrReleaseSwapchainImage", PFN_xrReleaseSwapchainImage>()};
   for (const Hooks& part : {frame_hooks(), mask_hooks(), hand_hooks()}) hooks.insert(part.begin(), part.end());
-  add_hook<"xrCreateSession", create_session>(hooks);
-  add_hook<"xrEnumerateReferenceSpaces", enumerate_spaces>(hooks);
-  add_hook<"xrCreateReferenceSpace", create_space>(hooks);
-  add_hook<"xrPollEvent", poll_event>(hooks);
-  hooks["xrDestroySession"] = reinterpret_cast<PFN_xrVoidFunction>(destroy_session);
-  pass<"xrGetSystem", PFN_xrGetSystem>(hooks);
-  pass<"xrBeginSession", PFN_xrBeginSession>(hooks);
-  pass<"xrEndSession", PFN_xrEndSession>(hooks);
-  pass<"xrRequestExitSession", PFN_xrRequestExitSession>(hooks);
-  pass<"xrAttachSessionActionSets", PFN_xrAttachSessionActionSets>(hooks);
-  pass<"xrAcquireSwapchainImage", PFN_xrAcquireSwapchainImage>(hooks);
-  pass<"xrWaitSwapchainImage", PFN_xrWaitSwapchainImage>(hooks);
-  pass<"xrReleaseSwapchainImage", PFN_xrReleaseSwapchainImage>(hooks);
   return hooks;
 }
 

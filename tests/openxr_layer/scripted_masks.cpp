@@ -90,9 +90,7 @@ void change_masks() {
 }
 
 Hooks mask_hooks() {
-  Hooks hooks;
-  add_hook<"xrGetVisibilityMaskKHR", get_mask>(hooks);
-  return hooks;
+  return {hook<"xrGetVisibilityMaskKHR", get_mask>()};
 }
 
 }  // namespace probewalk::test

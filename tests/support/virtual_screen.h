@@ -1,4 +1,5 @@
-// An X screen that nobody sees, for as long as this lives: windows of this process open on it.
+// An X screen that nobody sees, 960x540, for as long as this lives: windows of this process and of those that it starts
+// open on it.
 #pragma once
 
 #include <fcntl.h>
@@ -30,12 +31,10 @@ class VirtualScreen {
     }
     close(ends[1]);
     // It tells its number once it answers; an end without one means that there is no Xvfb.
-    std::string number;
-    for (char c = 0; read(ends[0], &c, 1) == 1 && c != '\n';) number += c;
+    for (char c = 0; read(ends[0], &c, 1) == 1 && c != '\n';) number_ += c;
     close(ends[0]);
-    is_there_ = !number.empty();
-    if (!is_there_) return;
-    setenv("DISPLAY", (":" + number).c_str(), 1);
+    if (number_.empty()) return;
+    setenv("DISPLAY", (":" + number_).c_str(), 1);
     setenv("XDG_SESSION_TYPE", "x11", 1);
     unsetenv("WAYLAND_DISPLAY");
   }
@@ -48,11 +47,13 @@ class VirtualScreen {
   VirtualScreen(const VirtualScreen&) = delete;
   VirtualScreen& operator=(const VirtualScreen&) = delete;
 
-  bool is_there() const { return is_there_; }
+  bool is_there() const { return !number_.empty(); }
+  // 12 of ":12".
+  const std::string& number() const { return number_; }
 
  private:
   pid_t server_ = -1;
-  bool is_there_ = false;
+  std::string number_;
 };
 
 }  // namespace probewalk::test

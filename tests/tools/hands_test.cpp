@@ -19,6 +19,7 @@
 #include "support/remote_hands.h"
 #include "support/room_pack.h"
 #include "support/threads_of.h"
+#include "support/virtual_screen.h"
 #include "support/x_screen.h"
 #include "tools/run_probewalk.h"
 
@@ -264,13 +265,9 @@ TEST(Hands, TeleportTurnMoveAndRecentreTheWearer) {
 TEST(Hands, TheSpectatorSeesWhereATeleportLeads) {
   if (!installed("monado-service") || !installed("Xvfb")) GTEST_SKIP() << "monado-service or Xvfb is not installed";
   const fs::path folder = fresh_folder("hands-spectator");
-  ASSERT_EQ(run(folder,
-                "cd '{}' && (Xvfb -displayfd 3 -noreset -screen 0 960x540x24 -nolisten tcp 3>display >/dev/null 2>&1 & "
-                "echo $! >screen-pid)"),
-            0);
-  for (int i = 0; i < 100 && read_text(folder / "display").empty(); ++i) std::this_thread::sleep_for(100ms);
-  const int display = std::atoi(read_text(folder / "display").c_str());
-  XScreen screen(std::to_string(display));
+  const VirtualScreen display;
+  ASSERT_TRUE(display.is_there());
+  XScreen screen(display.number());
   int before = -1, during = 0, after = -1;
   walk_with_hands(
       folder, "--mirror spectator --validate",
@@ -292,8 +289,7 @@ TEST(Hands, TheSpectatorSeesWhereATeleportLeads) {
           after = green_in(screen.picture());
         }
       },
-      fmt::format("DISPLAY=:{} XDG_SESSION_TYPE=x11", display));
-  run(folder, "kill $(cat '{}/screen-pid')");
+      fmt::format("DISPLAY=:{}", display.number()));
   EXPECT_THAT(read_text(folder / "stderr"), Not(HasSubstr("VUID")));
   EXPECT_EQ(before, 0);
   EXPECT_GE(during, 30);

@@ -290,7 +290,7 @@ TEST(OpenXrTiming, AStallOfTheRuntimeIsFoundInTheCallThatStalled) {
                 noise_ms, named, found.size(), cause.c_str());
     EXPECT_GE(median(injected), 160.0) << call;
     // A wait is what the runtime makes of the time left, so that it gives back a part of what it takes longer.
-    EXPECT_NEAR(median(wrong), 0.0, stage == "wait" ? 80.0 + noise_ms : 4.0 + 1.5 * noise_ms) << call;
+    EXPECT_NEAR(median(wrong), 0.0, stage == "wait" ? 80.0 + noise_ms : 1.0 + 1.5 * noise_ms) << call;
     EXPECT_GE(named + 1, found.size()) << call;
     EXPECT_GE(found.size(), 3u);
   }

@@ -14,6 +14,7 @@
 #include "content/stream/open_pack.h"
 #include "render/pipeline.h"
 #include "render/spirv.h"
+#include "support/frame_stages.h"
 #include "support/room_pack.h"
 #include "xr/latency/worst_frames.h"
 #include "xr/walk.h"
@@ -23,6 +24,11 @@ namespace {
 
 namespace fs = std::filesystem;
 using std::chrono::milliseconds;
+using test::at_rank;
+using test::length;
+using test::median;
+using test::ms;
+using test::stages_of;
 using testing::HasSubstr;
 
 constexpr auto kLookOut = std::chrono::microseconds(50);
@@ -255,38 +261,6 @@ WalkResult walk_with(const Plan& plan) {
   };
   SilentProgress progress;
   return walk(options, progress);
-}
-
-std::int64_t length(const Interval& interval) {
-  return interval.end - interval.begin;
-}
-
-// How long each stage of a frame took: worked out here once more, from the frame's time points alone.
-std::map<std::string, std::int64_t> stages_of(const FrameRecord& work, const FrameRecord& next) {
-  std::map<std::string, std::int64_t> stages{
-      {"begin", length(work.begin)},         {"locate_early", length(work.locate_early)},
-      {"record", length(work.record)},       {"locate_late", length(work.locate_late)},
-      {"submit", length(work.submit)},       {"end", length(work.end)},
-      {"ledger", length(work.ledger)},       {"wait", length(next.wait)},
-      {"blocked", work.blocked_ns},          {"streaming", work.streaming_ns},
-      {"gpu_trace", length(work.gpu_trace)}, {"gpu_resolve", length(work.gpu_resolve)},
-  };
-  stages["between_calls"] = next.wait.end - work.wait.end - stages["begin"] - stages["locate_early"] -
-                            stages["record"] - stages["locate_late"] - stages["submit"] - stages["end"] -
-                            stages["ledger"] - stages["wait"];
-  return stages;
-}
-
-std::int64_t at_rank(std::vector<std::int64_t> values, double p) {
-  const auto rank = static_cast<std::ptrdiff_t>(p * static_cast<double>(values.size() - 1) + 0.5);
-  std::ranges::nth_element(values, values.begin() + rank);
-  return values[static_cast<std::size_t>(rank)];
-}
-std::int64_t median(std::vector<std::int64_t> values) {
-  return at_rank(std::move(values), 0.5);
-}
-double ms(std::int64_t ns) {
-  return static_cast<double>(ns) * 1e-6;
 }
 
 TEST(WalkStalls, AreFoundInTheirStageAndNowhereElse) {

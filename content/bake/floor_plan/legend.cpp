@@ -19,6 +19,8 @@ constexpr int kSign_px = 40;   // from a sign's left end to its text
 constexpr int kApart_px = 26;  // between entries
 constexpr double kLeastBar_px = 90.0;
 constexpr int kAxes_px = 90;
+constexpr int kMostRoomPixels = 1'000'000;  // for rooms whose names have no place on the plan
+constexpr int kFewRoomRows = 4;             // there is space for these, however wide
 
 // 1, 2 or 5 times a power of ten: what makes a bar of a readable length.
 double bar_length_m(double px_per_m) {
@@ -77,7 +79,30 @@ void draw_entry(Canvas& canvas, const LegendEntry& entry, glm::ivec2 row_corner)
   letter(canvas, entry.text, row_corner + glm::ivec2(kSign_px, 12 + kText.cap_px / 2), kText, kInk);
 }
 
+// Columns of rooms beside each other.
+struct RoomColumns {
+  int width_px = 1, count = 1;
+};
+
+RoomColumns room_columns(const std::vector<LegendEntry>& rooms, int width_px) {
+  RoomColumns columns;
+  for (const LegendEntry& entry : rooms) {
+    columns.width_px = std::max(columns.width_px, kSign_px + text_width_px(entry.text, kText) + kApart_px);
+  }
+  columns.count = std::max(1, (width_px - 2 * kSheetMargin_px) / columns.width_px);
+  return columns;
+}
+
 }  // namespace
+
+void leave_out_rooms(Legend& legend, int width_px) {
+  const std::size_t most = std::size_t(room_columns(legend.rooms, width_px).count) *
+                           std::size_t(std::max(kFewRoomRows, kMostRoomPixels / (kRow_px * width_px)));
+  if (legend.rooms.size() <= most) return;
+  const std::size_t left_out = legend.rooms.size() - most + 1;
+  legend.rooms.resize(most - 1);
+  legend.rooms.push_back({fmt::format("and {} more", left_out), [](Canvas&, glm::dvec2) {}});
+}
 
 Canvas draw_legend(const Legend& legend, int width_px) {
   const double length_m = bar_length_m(legend.px_per_m);
@@ -88,11 +113,7 @@ Canvas draw_legend(const Legend& legend, int width_px) {
   int rows = 0;
   const std::vector<glm::ivec2> places = flow(widths, left, right, rows);
 
-  int room_px = 1;
-  for (const LegendEntry& entry : legend.rooms) {
-    room_px = std::max(room_px, kSign_px + text_width_px(entry.text, kText) + kApart_px);
-  }
-  const int columns = std::max(1, (right - kSheetMargin_px) / room_px);
+  const auto [room_px, columns] = room_columns(legend.rooms, width_px);
   const int room_rows = (int(legend.rooms.size()) + columns - 1) / columns;
   const int signs_px = std::max(rows * kRow_px, 44);
   const int height_px = 14 + signs_px + (room_rows > 0 ? 14 + room_rows * kRow_px : 0) + kSheetMargin_px;

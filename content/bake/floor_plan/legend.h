@@ -21,6 +21,8 @@ struct Legend {
   double px_per_m = 1.0;
 };
 
+// Keeps as many rooms as a legend of this width may have lines for, and says how many it leaves out.
+void leave_out_rooms(Legend& legend, int width_px);
 Canvas draw_legend(const Legend& legend, int width_px);
 
 }  // namespace probewalk

@@ -62,10 +62,13 @@ class RoomSearch {
     std::vector<std::int32_t> all(graph_.places.size());
     std::iota(all.begin(), all.end(), 0);
     flood(all, parts_rooms);
-    for (double smallest_m2 = limits_.smallest_m2;; smallest_m2 *= 2.0) {
+    // What is too large for a building is cut into larger pieces: no number of them would do on a plain of kilometres.
+    const double all_m2 = graph_.area_m2(all.size());
+    double largest_m2 = std::max(limits_.largest_m2, 2.0 * all_m2 / kMostRooms);
+    for (double smallest_m2 = limits_.smallest_m2;; smallest_m2 *= 2.0, largest_m2 *= 2.0) {
       join_small(all, smallest_m2, kNarrowest_m);
-      cut_large();
-      if (count_rooms() <= kMostRooms) break;
+      cut_large(largest_m2);
+      if (count_rooms() <= kMostRooms || smallest_m2 > all_m2) break;
     }
     return numbered();
   }
@@ -171,22 +174,22 @@ class RoomSearch {
   }
   std::int32_t count_rooms() const { return std::int32_t(std::set(label_.begin(), label_.end()).size()); }
 
-  void cut_large() {
+  void cut_large(double largest_m2) {
     for (const float share : kLargeShares) {
       for (const auto& [label, places] : by_label()) {
-        if (graph_.area_m2(places.size()) <= limits_.largest_m2) continue;
+        if (graph_.area_m2(places.size()) <= largest_m2) continue;
         flood(places, [share](float saddle_m, float peak_m) {
           return peak_m - saddle_m >= kLeastRise_m && saddle_m < share * peak_m;
         });
         join_small(places, kLeastPiece_m2, kNarrowest_m);
       }
     }
-    for (const auto& [label, places] : by_label()) halve(places);
+    for (const auto& [label, places] : by_label()) halve(places, largest_m2);
   }
 
   // At the middle between the two places that are farthest apart, walking; again until it is small enough.
-  void halve(const std::vector<std::int32_t>& places) {
-    if (graph_.area_m2(places.size()) <= limits_.largest_m2) return;
+  void halve(const std::vector<std::int32_t>& places, double largest_m2) {
+    if (graph_.area_m2(places.size()) <= largest_m2) return;
     const std::vector<float> from_any = ways_from(places.front(), places);
     const std::int32_t a = places[std::size_t(std::max_element(from_any.begin(), from_any.end()) - from_any.begin())];
     const std::vector<float> from_a = ways_from(a, places);
@@ -197,8 +200,8 @@ class RoomSearch {
     if (near_a.empty() || near_b.empty()) return;
     const std::int32_t label = next_label_++;
     for (const std::int32_t i : near_b) label_[i] = label;
-    halve(near_a);
-    halve(near_b);
+    halve(near_a, largest_m2);
+    halve(near_b, largest_m2);
   }
 
   // Lengths in cells within one room, by index into `places`, over straight and diagonal steps.
