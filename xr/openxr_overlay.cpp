@@ -28,7 +28,7 @@ XrPosef pose_of(glm::dvec3 position_m, const glm::dquat& q) {
 }  // namespace
 
 OpenXrOverlay::Drawing::Drawing(const Device& device, XrSession session, VkFormat format)
-    : swapchain(session, {format, XR_SWAPCHAIN_USAGE_COLOR_ATTACHMENT_BIT, kExtent, 1}),
+    : swapchain(device, session, {format, XR_SWAPCHAIN_USAGE_COLOR_ATTACHMENT_BIT, kExtent, 1}),
       pass(device, format, panel.atlas(), 1) {}
 
 OpenXrOverlay::OpenXrOverlay(const Device& device, XrSession session, VkFormat format, const OverlayBoard& board)
@@ -105,7 +105,7 @@ const XrCompositionLayerBaseHeader* OpenXrOverlay::layer() const {
 }
 
 OpenXrOutcome OpenXrOverlay::draw(const OverlayPicture& picture) {
-  const OpenXrOutcome acquired = drawing_->swapchain.acquire(device_);
+  const OpenXrOutcome acquired = drawing_->swapchain.acquire();
   if (acquired.result != XR_SUCCESS) return acquired;
   record(drawing_->swapchain.image(), picture);
   VkCommandBufferSubmitInfo commands{VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO};

@@ -135,7 +135,7 @@ void OpenXrSource::create_swapchains(VkExtent2D wanted) {
   if (format_ == VK_FORMAT_UNDEFINED) throw NoDevice("the OpenXR runtime offers no 8-bit sRGB swapchain format");
 
   color_ = std::make_unique<OpenXrSwapchain>(
-      session_.get(),
+      device_, session_.get(),
       OpenXrSwapchainOptions{format_, XR_SWAPCHAIN_USAGE_COLOR_ATTACHMENT_BIT | XR_SWAPCHAIN_USAGE_TRANSFER_SRC_BIT,
                              extent_, view_count()});
   if (!instance_.has(XR_KHR_COMPOSITION_LAYER_DEPTH_EXTENSION_NAME)) return;
@@ -145,7 +145,7 @@ void OpenXrSource::create_swapchains(VkExtent2D wanted) {
     return;
   }
   depth_ = std::make_unique<OpenXrSwapchain>(
-      session_.get(),
+      device_, session_.get(),
       OpenXrSwapchainOptions{depth_format_, XR_SWAPCHAIN_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT, extent_, view_count()});
 }
 
@@ -355,7 +355,7 @@ bool OpenXrSource::update_overlay() {
 
 bool OpenXrSource::acquire(OpenXrSwapchain& swapchain) {
   if (state_.source_state() == SourceState::kLost) return false;
-  const OpenXrOutcome outcome = swapchain.acquire(device_);
+  const OpenXrOutcome outcome = swapchain.acquire();
   if (!alive(outcome.result, outcome.call)) return false;
   if (outcome.result == XR_TIMEOUT_EXPIRED) {
     spdlog::warn("the OpenXR runtime keeps a swapchain image and does not let go");

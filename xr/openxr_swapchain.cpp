@@ -9,7 +9,8 @@ constexpr XrDuration kImageTimeout_ns = 2'000'000'000;
 
 }  // namespace
 
-OpenXrSwapchain::OpenXrSwapchain(XrSession session, const OpenXrSwapchainOptions& options) {
+OpenXrSwapchain::OpenXrSwapchain(const Device& device, XrSession session, const OpenXrSwapchainOptions& options)
+    : device_(device) {
   XrSwapchainCreateInfo info{XR_TYPE_SWAPCHAIN_CREATE_INFO};
   info.usageFlags = options.usage;
   info.format = options.format;
@@ -29,12 +30,17 @@ OpenXrSwapchain::OpenXrSwapchain(XrSession session, const OpenXrSwapchainOptions
   for (const auto& image : images) images_.push_back(image.image);
 }
 
-OpenXrOutcome OpenXrSwapchain::acquire(const Device& device) {
+OpenXrSwapchain::~OpenXrSwapchain() {
+  const auto queue = device_.lock_queue();
+  handle_.reset();
+}
+
+OpenXrOutcome OpenXrSwapchain::acquire() {
   XrSwapchainImageAcquireInfo acquire{XR_TYPE_SWAPCHAIN_IMAGE_ACQUIRE_INFO};
   std::uint32_t index = 0;
   XrResult result = XR_SUCCESS;
   {
-    const auto queue = device.lock_queue();
+    const auto queue = device_.lock_queue();
     result = xrAcquireSwapchainImage(handle_.get(), &acquire, &index);
   }
   if (result != XR_SUCCESS) return {result, "xrAcquireSwapchainImage"};

@@ -18,12 +18,17 @@ struct OpenXrSwapchainOptions {
 
 class OpenXrSwapchain {
  public:
-  // Throws NoDevice when the runtime refuses.
-  OpenXrSwapchain(XrSession session, const OpenXrSwapchainOptions& options);
+  // Throws NoDevice when the runtime refuses. The device is the session's and outlives the swapchain.
+  OpenXrSwapchain(const Device& device, XrSession session, const OpenXrSwapchainOptions& options);
+  // Without the device's queue locked: runtimes wait for it before they let go of the images, and others may present
+  // meanwhile.
+  ~OpenXrSwapchain();
+  OpenXrSwapchain(const OpenXrSwapchain&) = delete;
+  OpenXrSwapchain& operator=(const OpenXrSwapchain&) = delete;
 
   // Takes the next image and waits until the compositor has let go of it, at most two seconds: then
   // XR_TIMEOUT_EXPIRED. The image is held only after XR_SUCCESS.
-  OpenXrOutcome acquire(const Device& device);
+  OpenXrOutcome acquire();
   // Gives the image back, if one is held. With the device's queue locked.
   OpenXrOutcome release();
   // The image held; VK_NULL_HANDLE when none is.
@@ -33,6 +38,7 @@ class OpenXrSwapchain {
   XrSwapchainSubImage layer(std::uint32_t view, VkExtent2D drawn) const;
 
  private:
+  const Device& device_;
   XrOwned<XrSwapchain, xrDestroySwapchain> handle_;
   std::vector<VkImage> images_;
   VkImage held_ = VK_NULL_HANDLE;

@@ -1,5 +1,5 @@
-// Points spread over all surfaces that can be seen, both sides, about a spacing apart, and the smooth interpolation
-// between them.
+// Points spread over all surfaces that can be seen, both sides, about a spacing apart and closer in narrow places
+// (point_scatter.h), and the smooth interpolation between them.
 // A point speaks for a flat neighbourhood of its own side only, as far as the surface lies open around it: light does
 // not leak under walls, through thin sheets, or out from under furniture.
 #pragma once
@@ -11,6 +11,7 @@
 #include <glm/glm.hpp>
 #include <vector>
 
+#include "content/bake/point_index.h"
 #include "content/progress.h"
 #include "content/scene/ray_scene.h"
 #include "content/scene/scene.h"
@@ -19,17 +20,19 @@ namespace probewalk {
 
 class CachePoints {
  public:
-  static constexpr int kSectors = 32;  // fine enough to see along a strip as narrow as a door frame
+  static constexpr float kOffPlane = 6.0f;  // distance across the surface counts this much more than along it
+  static constexpr int kSectors = 32;       // fine enough to see along a strip as narrow as a door frame
   struct Point {
     glm::vec3 position_m{0.0f};
     glm::vec3 normal{0.0f};  // unit; shading normal of its side
     glm::vec3 geometric_normal{0.0f};
+    float spacing_m = 0.0f;  // to the others around; its reach grows with it
     // How near the surface around is closed, by direction: kNearSteps * reach / free way; 0 = open. The reciprocal is
     // what interpolates well: along a straight wall it is affine in the direction.
     std::array<std::uint8_t, kSectors> nearness{};
   };
 
-  // Spacing is raised until at most max_points are needed; spacing_m() says what it became.
+  // Spacing is raised until at most max_points are needed, beside as many closer ones; spacing_m() says what it became.
   CachePoints(const Scene& scene, const RayScene& rays, double spacing_m, std::size_t max_points, Progress& progress);
 
   std::size_t size() const { return points_.size(); }
@@ -61,59 +64,48 @@ class CachePoints {
 
  private:
   static constexpr float kVanishing = 1e-12f;
-  static constexpr float kOffPlane = 6.0f;     // distance across the surface counts this much more than along it
+  static constexpr float kReachPerSpacing = 1.75f;  // five or six points speak at any place
   static constexpr float kLeastFacing = 0.2f;  // cosine below which a point says nothing
   static constexpr float kNearSteps = 12.0f;
-  // What decides whether a point matters at a place, copied beside its neighbours': looking is most of the work.
-  struct Member {
-    glm::vec3 position_m{0.0f};
-    std::uint32_t point = 0;
-    glm::vec3 normal{0.0f};
-  };
-  struct Bucket {
-    std::uint64_t key = ~0ull;
-    std::uint32_t first = 0, count = 0;
+  // Points of one spacing.
+  struct Level {
+    float reach_m = 0.0f;   // of a point's influence
+    float say = 1.0f;       // of a point against one of the widest spacing: in narrow places these know little
+    PointIndex index;
   };
 
-  bool scatter(const Scene& scene, const RayScene& rays, std::size_t max_points, Progress& progress);
   void look_around(const RayScene& rays, Progress& progress);
-  void build_index();
-  std::uint64_t cell_key(glm::ivec3 cell) const;
-  const Bucket* find(std::uint64_t key) const;
+  void build_levels();
   float open_fraction(const Point& point, glm::vec3 offset, float tangential_m) const;
   // Calls visit(point, weight if it sees the place, weight if it need not); returns the sum of the former.
   template <typename Visit>
   float for_each_weight(glm::vec3 position_m, glm::vec3 normal, Visit&& visit) const;
 
   float spacing_m_ = 0.25f;
-  float reach_m_ = 0.4f;  // of a point's influence
   std::uint64_t rays_cast_ = 0;
   std::vector<Point> points_;
-  float cell_m_ = 0.2f;          // of the index
-  std::vector<Member> members_;  // grouped by the cell that they influence
-  std::vector<Bucket> buckets_;  // open addressing, a power of two of them
+  std::vector<Level> levels_;  // those that have points
 };
 
 template <typename Visit>
 float CachePoints::for_each_weight(glm::vec3 position_m, glm::vec3 normal, Visit&& visit) const {
-  const Bucket* bucket = find(cell_key(glm::ivec3(glm::floor(position_m / cell_m_))));
-  if (!bucket) return 0.0f;
-  const float inverse_square = 1.0f / (reach_m_ * reach_m_);
   float sum = 0.0f;
-  for (std::uint32_t m = bucket->first; m < bucket->first + bucket->count; ++m) {
-    const Member& member = members_[m];
-    const glm::vec3 offset = position_m - member.position_m;
-    const float facing = glm::dot(member.normal, normal), across = glm::dot(offset, member.normal);
-    const float straight_square = glm::dot(offset, offset);
-    const float square = (straight_square + (kOffPlane * kOffPlane - 1.0f) * across * across) * inverse_square;
-    if (facing <= kLeastFacing || square >= 1.0f) continue;
-    const Point& point = points_[member.point];
-    const float along_m = std::sqrt(std::max(straight_square - across * across, 0.0f));
-    const float kernel = (1.0f - square) * (1.0f - square);
-    const float turned = (facing - kLeastFacing) / (1.0f - kLeastFacing);
-    const float blocked = kernel * turned * turned, open = blocked * open_fraction(point, offset, along_m);
-    visit(member.point, open, blocked);
-    sum += open;
+  for (const Level& level : levels_) {
+    const float inverse_square = 1.0f / (level.reach_m * level.reach_m);
+    for (const PointIndex::Member& member : level.index.at(position_m)) {
+      const glm::vec3 offset = position_m - member.position_m;
+      const float facing = glm::dot(member.normal, normal), across = glm::dot(offset, member.normal);
+      const float straight_square = glm::dot(offset, offset);
+      const float square = (straight_square + (kOffPlane * kOffPlane - 1.0f) * across * across) * inverse_square;
+      if (facing <= kLeastFacing || square >= 1.0f) continue;
+      const Point& point = points_[member.point];
+      const float along_m = std::sqrt(std::max(straight_square - across * across, 0.0f));
+      const float kernel = level.say * (1.0f - square) * (1.0f - square);
+      const float turned = (facing - kLeastFacing) / (1.0f - kLeastFacing);
+      const float blocked = kernel * turned * turned, open = blocked * open_fraction(point, offset, along_m);
+      visit(member.point, open, blocked);
+      sum += open;
+    }
   }
   return sum;
 }

@@ -1,7 +1,10 @@
 // What the parts of the scripted layer share: its orders, the runtime behind it, the session under way.
 #pragma once
 
+#include <vulkan/vulkan.h>
+#define XR_USE_GRAPHICS_API_VULKAN
 #include <openxr/openxr.h>
+#include <openxr/openxr_platform.h>
 
 #include <algorithm>
 #include <cstdint>
@@ -40,6 +43,7 @@ struct SessionUnderWay {
   std::map<XrSpace, XrReferenceSpaceType> spaces;
   std::set<XrSpace> aim_spaces;
   std::map<XrSwapchain, LayerSwapchain> swapchains;
+  VkQueue queue = VK_NULL_HANDLE;  // the application's, that the runtime may use as well
 };
 
 struct Event {

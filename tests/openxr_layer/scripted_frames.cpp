@@ -7,6 +7,9 @@
 //   still=1                               the head stays where it was first located
 //   late_m=X                              the kth locate of a frame is answered k * X metres further along x
 //   period_ms=FRAME:MS,...                the period that xrWaitFrame tells
+//   destroy_ms=MS                         xrDestroySwapchain uses the application's queue all that time, as runtimes do
+//                                         which wait for the images
+#include <chrono>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -27,6 +30,7 @@ struct Book {
   XrTime display_time = 0;  // of the frame begun last
   bool begun = false;
   int locates = 0;
+  int swapchains_destroyed = 0;
   std::vector<XrView> located;  // as answered last in this frame
   std::vector<XrView> first;    // of the session
   std::vector<Jump> jumps;
@@ -132,7 +136,8 @@ double over_floor_m(XrSpace space, XrTime time) {
 json frame_json(const XrFrameEndInfo& info) {
   json line{{"session", layer.session.number},  {"frame", layer.session.frame}, {"waited_time", book.display_time},
             {"display_time", info.displayTime}, {"layers", info.layerCount},    {"locates", book.locates},
-            {"views", json::array()},           {"located", json::array()}};
+            {"views", json::array()},           {"located", json::array()},
+            {"swapchains_destroyed", book.swapchains_destroyed}};
   for (const XrView& view : book.located) {
     line["located"].push_back(
         {{"pose", pose_json(view.pose)},
@@ -166,6 +171,17 @@ XRAPI_ATTR XrResult XRAPI_CALL create_swapchain(XrSession session, const XrSwapc
   return result;
 }
 
+XRAPI_ATTR XrResult XRAPI_CALL destroy_swapchain(XrSwapchain swapchain) {
+  const auto until = std::chrono::steady_clock::now() +
+                     std::chrono::duration<double, std::milli>(layer.number("destroy_ms"));
+  while (std::chrono::steady_clock::now() < until && vkQueueWaitIdle(layer.session.queue) == VK_SUCCESS) {
+  }
+  const XrResult result = layer.next<PFN_xrDestroySwapchain>("xrDestroySwapchain")(swapchain);
+  const std::scoped_lock lock(layer.mutex);
+  ++book.swapchains_destroyed;
+  return result;
+}
+
 }  // namespace
 
 double beside_m(XrTime time) {
@@ -196,7 +212,8 @@ Hooks frame_hooks() {
           hook<"xrBeginFrame", begin_frame>(),
           hook<"xrLocateViews", locate_views>(),
           hook<"xrEndFrame", end_frame>(),
-          hook<"xrCreateSwapchain", create_swapchain>()};
+          hook<"xrCreateSwapchain", create_swapchain>(),
+          {"xrDestroySwapchain", reinterpret_cast<PFN_xrVoidFunction>(destroy_swapchain)}};
 }
 
 }  // namespace probewalk::test

@@ -161,6 +161,11 @@ XRAPI_ATTR XrResult XRAPI_CALL create_session(XrInstance instance, const XrSessi
   if (XR_FAILED(result)) return result;
   const std::scoped_lock lock(layer.mutex);
   layer.session = {.handle = *session, .number = layer.session.number + 1};
+  for (auto next = static_cast<const XrBaseInStructure*>(info->next); next != nullptr; next = next->next) {
+    if (next->type != XR_TYPE_GRAPHICS_BINDING_VULKAN2_KHR) continue;
+    const auto& binding = *reinterpret_cast<const XrGraphicsBindingVulkan2KHR*>(next);
+    vkGetDeviceQueue(binding.device, binding.queueFamilyIndex, binding.queueIndex, &layer.session.queue);
+  }
   layer.events.clear();
   begin_losses();
   begin_masks();

@@ -247,7 +247,7 @@ TEST(LightField, ShinesOutOfAClosedBulb) {
 }
 
 // Another way to the same light: paths followed from a point until they die, without caches or patterns, emission counted
-// where it is hit and point lights asked for at every bounce.
+// where it is hit, the sky where nothing is, and point lights asked for at every bounce.
 glm::vec3 follow_paths(const Scene& scene, const RayScene& rays, glm::vec3 from, glm::vec3 towards, int paths) {
   test::Random random(1);
   glm::dvec3 sum(0.0);
@@ -255,7 +255,10 @@ glm::vec3 follow_paths(const Scene& scene, const RayScene& rays, glm::vec3 from,
     glm::vec3 origin = from, direction = towards, throughput(1.0f);
     for (int bounce = 0; bounce < 24; ++bounce) {
       const SurfaceHit hit = rays.closest(origin, direction);
-      if (!hit.hit) break;
+      if (!hit.hit) {
+        sum += glm::dvec3(throughput * scene.sky.radiance(direction));
+        break;
+      }
       const Material& material = scene.materials[scene.triangle_material[hit.triangle]];
       sum += glm::dvec3(throughput * material.emissive_cd_m2);
       const glm::vec3 normal = glm::dot(hit.geometric_normal, direction) < 0.0f ? hit.geometric_normal : -hit.geometric_normal;
@@ -311,6 +314,41 @@ TEST(LightField, AgreesWithPathsThatAreFollowed) {
   ASSERT_GT(count, 30);
   EXPECT_NEAR(sum_cached / sum_followed, 1.0, 0.03) << "energy";
   EXPECT_LT(error / count, 0.05) << "mean error of a direction, noise of the followed paths included";
+}
+
+// A slot four times as deep as it is high, far narrower than the cache's spacing: light decays within it as fast as it is
+// high, and no point at the mouth may say how bright it is inside.
+TEST(LightField, FadesIntoANarrowSlot) {
+  constexpr float kDeep_m = 0.24f, kHigh_m = 0.06f;
+  Scene scene;
+  plain::add_material(scene, glm::vec3(0.5f));
+  plain::add_quad(scene, {-kDeep_m, 0, -1}, {-kDeep_m, 0, 1}, {1, 0, 1}, {1, 0, -1}, 0);
+  plain::add_quad(scene, {-kDeep_m, kHigh_m, -1}, {0, kHigh_m, -1}, {0, kHigh_m, 1}, {-kDeep_m, kHigh_m, 1}, 0);
+  plain::add_quad(scene, {-kDeep_m, 0, -1}, {-kDeep_m, kHigh_m, -1}, {-kDeep_m, kHigh_m, 1}, {-kDeep_m, 0, 1}, 0);
+  scene.sky.zenith_cd_m2 = scene.sky.horizon_cd_m2 = glm::vec3(100.0f);
+  const RayScene rays(scene);
+  SilentProgress progress;
+  LightOptions options = quick();
+  options.samples = 128;
+  options.cache_spacing_m = 0.25;
+  const LightField light(scene, rays, options, progress);
+  EXPECT_LT(light.cache_points(), 2500u) << "closer points in the slot alone";
+  std::vector<double> cached, followed;
+  for (float x : {-0.03f, -0.09f, -0.15f}) {
+    // A sensor just over the slot's floor that looks down, mid-way along it.
+    std::vector<double> cached_here, followed_here;
+    for (float z : {-0.4f, -0.23f, -0.05f, 0.11f, 0.3f}) {
+      const glm::vec3 eye(x, 0.5f * kHigh_m, z), down(0, -1, 0);
+      cached_here.push_back(double(luminance(light.along(eye, down, 0.001f))));
+      followed_here.push_back(double(luminance(follow_paths(scene, rays, eye, down, 20000))));
+    }
+    // Points 250 mm apart: 2.4, 5.9 and 11 times too bright.
+    EXPECT_NEAR(agreement(cached_here, followed_here).energy, 1.0, 0.5) << "at " << x;
+    cached.insert(cached.end(), cached_here.begin(), cached_here.end());
+    followed.insert(followed.end(), followed_here.begin(), followed_here.end());
+  }
+  EXPECT_NEAR(agreement(cached, followed).energy, 1.0, 0.12);
+  EXPECT_LT(agreement(cached, followed).mean_error, 0.2);
 }
 
 TEST(LightField, IsTheSameWhateverTheThreads) {
