@@ -73,13 +73,17 @@ void CachePoints::look_around(const RayScene& rays, Progress& progress) {
 
 void CachePoints::build_levels() {
   std::map<float, std::vector<PointIndex::Influence>, std::greater<>> by_spacing;
+  std::vector<PointIndex::Influence> closer;
   for (std::uint32_t k = 0; k < points_.size(); ++k) {
     const Point& point = points_[k];
-    by_spacing[point.spacing_m].push_back({{point.position_m, k, point.normal}, influence_m(k)});
+    const PointIndex::Influence influence{{point.position_m, k, point.normal}, influence_m(k)};
+    by_spacing[point.spacing_m].push_back(influence);
+    if (point.spacing_m != points_.front().spacing_m) closer.push_back(influence);
   }
   for (const auto& [spacing_m, influences] : by_spacing) {
-    const float reach_m = kReachPerSpacing * spacing_m, times = spacing_m_ / spacing_m;
-    levels_.push_back({reach_m, times * times, PointIndex(influences, kCellPerReach * reach_m)});
+    const float reach_m = kReachPerSpacing * spacing_m;
+    levels_.push_back(
+        {reach_m, PointIndex(influences, kCellPerReach * reach_m, levels_.empty() ? closer : decltype(closer)())});
   }
 }
 
@@ -127,7 +131,8 @@ std::uint64_t CachePoints::identity(std::size_t k) const {
 // The influence is a flat ellipsoid; its box.
 glm::vec3 CachePoints::influence_m(std::size_t k) const {
   const glm::vec3 n = points_[k].normal;
-  return kReachPerSpacing * points_[k].spacing_m * glm::sqrt(glm::max(glm::vec3(1.0f) - n * n * (1.0f - 1.0f / (kOffPlane * kOffPlane)), 0.0f));
+  return kReachPerSpacing * points_[k].spacing_m *
+         glm::sqrt(glm::max(glm::vec3(1.0f) - n * n * (1.0f - 1.0f / (kOffPlane * kOffPlane)), 0.0f));
 }
 
 }  // namespace probewalk

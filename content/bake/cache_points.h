@@ -65,12 +65,11 @@ class CachePoints {
  private:
   static constexpr float kVanishing = 1e-12f;
   static constexpr float kReachPerSpacing = 1.75f;  // five or six points speak at any place
-  static constexpr float kLeastFacing = 0.2f;  // cosine below which a point says nothing
+  static constexpr float kLeastFacing = 0.2f;       // cosine below which a point says nothing
   static constexpr float kNearSteps = 12.0f;
   // Points of one spacing.
   struct Level {
-    float reach_m = 0.0f;   // of a point's influence
-    float say = 1.0f;       // of a point against one of the widest spacing: in narrow places these know little
+    float reach_m = 0.0f;  // of a point's influence
     PointIndex index;
   };
 
@@ -84,15 +83,19 @@ class CachePoints {
   float spacing_m_ = 0.25f;
   std::uint64_t rays_cast_ = 0;
   std::vector<Point> points_;
-  std::vector<Level> levels_;  // those that have points
+  std::vector<Level> levels_;  // those that have points; the first knows where others matter
 };
 
 template <typename Visit>
 float CachePoints::for_each_weight(glm::vec3 position_m, glm::vec3 normal, Visit&& visit) const {
-  float sum = 0.0f;
-  for (const Level& level : levels_) {
-    const float inverse_square = 1.0f / (level.reach_m * level.reach_m);
-    for (const PointIndex::Member& member : level.index.at(position_m)) {
+  if (levels_.empty()) return 0.0f;
+  // The closer points speak first; the wider ones have what they leave: nothing where there are enough of them.
+  const PointIndex::Found widest = levels_.front().index.at(position_m);
+  float sum = 0.0f, left = 1.0f;
+  for (std::size_t l = widest.has_closer ? levels_.size() - 1 : 0; left > 0.0f; --l) {
+    const Level& level = levels_[l];
+    const float inverse_square = 1.0f / (level.reach_m * level.reach_m), share = left;
+    for (const PointIndex::Member& member : (l == 0 ? widest : level.index.at(position_m)).members) {
       const glm::vec3 offset = position_m - member.position_m;
       const float facing = glm::dot(member.normal, normal), across = glm::dot(offset, member.normal);
       const float straight_square = glm::dot(offset, offset);
@@ -100,12 +103,14 @@ float CachePoints::for_each_weight(glm::vec3 position_m, glm::vec3 normal, Visit
       if (facing <= kLeastFacing || square >= 1.0f) continue;
       const Point& point = points_[member.point];
       const float along_m = std::sqrt(std::max(straight_square - across * across, 0.0f));
-      const float kernel = level.say * (1.0f - square) * (1.0f - square);
+      const float kernel = (1.0f - square) * (1.0f - square);
       const float turned = (facing - kLeastFacing) / (1.0f - kLeastFacing);
       const float blocked = kernel * turned * turned, open = blocked * open_fraction(point, offset, along_m);
-      visit(member.point, open, blocked);
-      sum += open;
+      visit(member.point, share * open, share * blocked);
+      sum += share * open;
+      left -= open;
     }
+    if (l == 0) break;
   }
   return sum;
 }

@@ -28,17 +28,22 @@ class PointIndex {
     glm::vec3 half_m{0.0f};  // of the box around the point outside of which it does not count
   };
 
-  PointIndex() = default;
-  // cell_m > 0. The order of the influences does not matter.
-  PointIndex(std::span<const Influence> influences, float cell_m);
+  struct Found {
+    std::span<const Member> members;  // in the order of the points' numbers
+    bool has_closer = false;          // points of another index may count there, too
+  };
 
-  // Thread-safe. In the order of the points' numbers.
-  std::span<const Member> at(glm::vec3 position_m) const {
+  PointIndex() = default;
+  // cell_m > 0. The order of the influences does not matter. closer: of points that are in other indices.
+  PointIndex(std::span<const Influence> influences, float cell_m, std::span<const Influence> closer = {});
+
+  // Thread-safe.
+  Found at(glm::vec3 position_m) const {
     if (buckets_.empty()) return {};
     const std::uint64_t key = point_cell_key(glm::ivec3(glm::floor(position_m / cell_m_)));
     for (std::size_t slot = first_slot(key);; slot = (slot + 1) & (buckets_.size() - 1)) {
       const Bucket& bucket = buckets_[slot];
-      if (bucket.key == key) return std::span(members_).subspan(bucket.first, bucket.count);
+      if (bucket.key == key) return {std::span(members_).subspan(bucket.first, bucket.count), bucket.has_closer != 0};
       if (bucket.key == kNone) return {};
     }
   }
@@ -47,7 +52,7 @@ class PointIndex {
   static constexpr std::uint64_t kNone = ~0ull;
   struct Bucket {
     std::uint64_t key = kNone;
-    std::uint32_t first = 0, count = 0;
+    std::uint32_t first = 0, count : 31 = 0, has_closer : 1 = 0;
   };
   std::size_t first_slot(std::uint64_t key) const {
     return (key * 0x9E3779B97F4A7C15ull) >> 32 & (buckets_.size() - 1);

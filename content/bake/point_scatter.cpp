@@ -4,9 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
-#include <unordered_map>
-#include <unordered_set>
+#include <numbers>
 #include <utility>
 
 #include "content/bake/patterns.h"
@@ -30,18 +28,55 @@ constexpr int kHiddenLeast = 15;
 constexpr int kHalvings = 3;                // of the spacing
 constexpr float kSpacingPerFreeWay = 0.5f;  // wanted; a gap is half again as free as it is wide
 constexpr int kFreeWayRays = 16;
-constexpr float kLeastWay_m = 0.02f;   // a single ray that meets a rug's edge is no gap
-constexpr float kFarWays = 8.0f;   // what is so much further than the free way asked about hardly shortens it
-constexpr float kPieceSpacings = 4.0f;  // edge of the pieces of a triangle that are looked at or skipped as a whole
-constexpr std::size_t kFewPoints = 20000;  // cost next to nothing
-constexpr int kMostTries = 6;          // to have no more close points than others, where all the scene is narrow
+constexpr float kLeastWay_m = 0.02f;        // a single ray that meets a rug's edge is no gap
+constexpr float kFarWays = 8.0f;            // what is so much further than the free way asked about hardly shortens it
+constexpr std::uint32_t kTriedAround = 48;  // places round a point whose free way is short
+constexpr float kAround = 2.4f;             // spacings away, at most
+constexpr float kOver = 0.25f;              // spacings over the surface: from there the next place is looked for
+constexpr std::size_t kFewPoints = 20000;   // cost next to nothing
+constexpr float kSeen_m = 0.3f;             // from where people look
+constexpr float kNarrower = 2.5f;           // is asked for with each try to have no more closer points than may be
+constexpr int kMostTries = 5;
 
-struct Corners {
-  glm::vec3 a, b, c;  // barycentric or metres
-  glm::vec3 lower() const { return glm::min(a, glm::min(b, c)); }
-  glm::vec3 upper() const { return glm::max(a, glm::max(b, c)); }
-  float longest() const { return std::max(glm::length(b - a), std::max(glm::length(c - b), glm::length(a - c))); }
-  float area() const { return 0.5f * glm::length(glm::cross(b - a, c - a)); }
+// Cells of a grid by a word each, in a table with open addressing.
+class CellTable {
+ public:
+  static constexpr std::uint32_t kNone = ~0u;
+  // kNone where the cell was never touched.
+  std::uint32_t find(std::uint64_t key) const {
+    if (slots_.empty()) return kNone;
+    for (std::size_t slot = first_slot(key);; slot = (slot + 1) & (slots_.size() - 1)) {
+      if (slots_[slot].key == key || slots_[slot].value == kNone) return slots_[slot].value;
+    }
+  }
+  // Its value, which is kNone at first and must not stay so.
+  std::uint32_t& at(std::uint64_t key) {
+    if (2 * (count_ + 1) > slots_.size()) grow();
+    std::size_t slot = first_slot(key);
+    while (slots_[slot].value != kNone && slots_[slot].key != key) slot = (slot + 1) & (slots_.size() - 1);
+    count_ += slots_[slot].value == kNone;
+    slots_[slot].key = key;
+    return slots_[slot].value;
+  }
+
+ private:
+  struct Slot {
+    std::uint64_t key = 0;
+    std::uint32_t value = kNone;
+  };
+  std::size_t first_slot(std::uint64_t key) const { return (key * 0x9E3779B97F4A7C15ull) >> 32 & (slots_.size() - 1); }
+  void grow() {
+    std::vector<Slot> old(std::max<std::size_t>(64, 2 * slots_.size()));
+    old.swap(slots_);
+    for (const Slot& from : old) {
+      if (from.value == kNone) continue;
+      std::size_t slot = first_slot(from.key);
+      while (slots_[slot].value != kNone) slot = (slot + 1) & (slots_.size() - 1);
+      slots_[slot] = from;
+    }
+  }
+  std::vector<Slot> slots_;
+  std::size_t count_ = 0;
 };
 
 // Points by cells as wide as their spacing.
@@ -49,24 +84,31 @@ class NearPoints {
  public:
   explicit NearPoints(float cell_m) : cell_m_(cell_m) {}
   glm::ivec3 cell_of(glm::vec3 position_m) const { return glm::ivec3(glm::floor(position_m / cell_m_)); }
-  void add(glm::vec3 position_m, std::uint32_t point) { cells_[point_cell_key(cell_of(position_m))].push_back(point); }
+  void add(glm::vec3 position_m, std::uint32_t point) {
+    std::uint32_t& last = last_of_cell_.at(point_cell_key(cell_of(position_m)));
+    links_.push_back({point, last});
+    last = static_cast<std::uint32_t>(links_.size() - 1);
+  }
   // Whether any point less than a cell away passes the test, and some others.
   template <typename Test>
   bool any_near(glm::vec3 position_m, Test&& test) const {
     const glm::ivec3 centre = cell_of(position_m);
     for (int k = 0; k < 27; ++k) {
-      const auto found = cells_.find(point_cell_key(centre + glm::ivec3(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1)));
-      if (found == cells_.end()) continue;
-      for (std::uint32_t point : found->second) {
-        if (test(point)) return true;
+      std::uint32_t link = last_of_cell_.find(point_cell_key(centre + glm::ivec3(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1)));
+      for (; link != CellTable::kNone; link = links_[link].before) {
+        if (test(links_[link].point)) return true;
       }
     }
     return false;
   }
 
  private:
+  struct Link {
+    std::uint32_t point, before;  // in the same cell
+  };
   float cell_m_;
-  std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> cells_;
+  CellTable last_of_cell_;
+  std::vector<Link> links_;
 };
 
 // Places that were looked at in vain: what is near them need not be looked at again.
@@ -94,135 +136,127 @@ class Rejected {
   std::vector<Place> places_;
 };
 
+// The surface around a point, as far as one gets along it.
+class Surroundings {
+ public:
+  Surroundings(const RayScene& rays, const CachePoints::Point& point, float over_m) : rays_(rays), point_(point) {
+    tangent_frame(point.geometric_normal, tangent_, bitangent_);
+    offset_m_ = ray_offset_m(point.position_m);
+    // Not through what hangs over it.
+    const glm::vec3 start = point.position_m + point.geometric_normal * offset_m_;
+    const SurfaceHit roof = rays.closest(start, point.geometric_normal, 0.0f, 2.0f * over_m);
+    over_m_ = roof.hit ? 0.5f * roof.t : over_m;
+    above_m_ = start + point.geometric_normal * over_m_;
+  }
+  // The surface that the kth place of the disc round the point lies on; none where something stands between.
+  SurfaceHit find(std::uint32_t k, float radius_m) const {
+    const glm::vec2 square = rotate_pattern(r2_sequence(k), mix_place(point_.position_m, 1));
+    const float away_m = radius_m * std::sqrt(square.x), angle = 2.0f * std::numbers::pi_v<float> * square.y;
+    const glm::vec3 aside = away_m * (std::cos(angle) * tangent_ + std::sin(angle) * bitangent_);
+    if (rays_.occluded(above_m_, aside, 0.0f, 1.0f)) return {};
+    return rays_.closest(above_m_ + aside, -point_.geometric_normal, 0.0f, 2.0f * over_m_ + offset_m_);
+  }
+
+ private:
+  const RayScene& rays_;
+  const CachePoints::Point& point_;
+  glm::vec3 tangent_{0.0f}, bitangent_{0.0f}, above_m_{0.0f};
+  float offset_m_ = 0.0f, over_m_ = 0.0f;
+};
+
 class Scatter {
  public:
   Scatter(const Scene& scene, const RayScene& rays, Progress& progress)
       : scene_(scene), rays_(rays), progress_(progress) {}
 
-  // Everywhere, from nothing. False when there are more than most.
+  // Dart throwing over fixed candidates on every triangle. False when there are more than most.
   bool cover(float spacing_m, std::size_t most) {
+    progress_.begin("light cache points", scene_.triangles.size(), "triangles");
     points_.clear();
-    free_ways_m_.clear();
-    rejected_.reset();
-    return fill(spacing_m, most, [](const Corners&) { return true; }, [](const SurfacePoint&) { return true; });
-  }
-
-  // Where the spacing that the free way wants is less than that of the points so far. False when there are more than
-  // most.
-  bool refine(float spacing_m, float spacing_per_free_way, std::size_t most) {
-    measure_free_ways();
-    const float before_m = 2.0f * spacing_m, short_m = before_m / spacing_per_free_way;
-    // The free way changes no faster than one moves: only near points whose own is short can it be short.
-    const NearPoints cells(before_m);
-    std::unordered_set<std::uint64_t> wanted;
-    for (std::size_t k = 0; k < points_.size(); ++k) {
-      if (free_ways_m_[k] > short_m + 2.0f * before_m) continue;
-      const glm::ivec3 centre = cells.cell_of(points_[k].position_m);
-      for (int n = 0; n < 27; ++n) {
-        wanted.insert(point_cell_key(centre + glm::ivec3(n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1)));
+    free_ways_.clear();
+    NearPoints near(spacing_m);
+    for (std::uint32_t t = 0; t < scene_.triangles.size(); ++t) {
+      progress_.advance(1);
+      const glm::uvec3 index = scene_.triangles[t];
+      const glm::vec3 a = scene_.positions_m[index.x], b = scene_.positions_m[index.y], c = scene_.positions_m[index.z];
+      const glm::vec3 cross = glm::cross(b - a, c - a);
+      const float twice_area = glm::length(cross);
+      if (!(twice_area > 0.0f)) continue;
+      SurfaceHit hit;
+      hit.triangle = t;
+      hit.geometric_normal = cross / twice_area;
+      const float squares = 0.5f * twice_area / (spacing_m * spacing_m);
+      const float lengths = std::max(glm::length(b - a), std::max(glm::length(c - b), glm::length(a - c))) / spacing_m;
+      const float wanted = std::max(squares * kCandidatesPerSquare, lengths * kCandidatesPerLength);
+      const auto candidates = 1u + static_cast<std::uint32_t>(std::min(wanted, 1e6f));
+      for (std::uint32_t k = 0; k < candidates; ++k) {
+        if (k % 256 == 0) stop_when_cancelled();
+        const glm::vec2 square = r2_sequence(k);
+        const float root = std::sqrt(square.x);
+        hit.barycentric = {root * (1.0f - square.y), root * square.y};
+        for (glm::vec3 towards : {-hit.geometric_normal, hit.geometric_normal}) {
+          const SurfacePoint surface = surface_at(scene_, hit, towards, spacing_m);
+          if (is_taken(near, surface, spacing_m) || is_hidden(surface)) continue;
+          if (points_.size() == most) return false;
+          add(near, surface, spacing_m);
+        }
       }
     }
-    if (wanted.empty()) return true;
-    rejected_.emplace(spacing_m);
-    return fill(
-        spacing_m, most,
-        [&](const Corners& piece_m) {
-          const glm::ivec3 low = cells.cell_of(piece_m.lower()), high = cells.cell_of(piece_m.upper());
-          for (int z = low.z; z <= high.z; ++z) {
-            for (int y = low.y; y <= high.y; ++y) {
-              for (int x = low.x; x <= high.x; ++x) {
-                if (wanted.contains(point_cell_key({x, y, z}))) return true;
-              }
-            }
-          }
-          return false;
-        },
-        [&](const SurfacePoint& at) {
-          if (!wanted.contains(point_cell_key(cells.cell_of(at.position_m)))) return false;
-          rays_cast_ += kFreeWayRays;
-          const float way_m = free_way_m(at.position_m, at.geometric_normal, at.normal, kFarWays * short_m);
-          if (way_m < short_m) return true;
-          rejected_->add(at, std::clamp(way_m - short_m, 0.5f * spacing_m, spacing_m));
-          return false;
-        });
+    return true;
+  }
+
+  // Round the points so far, where the spacing that the free way wants is less than theirs. False when there are more
+  // than most.
+  bool refine(float spacing_m, float spacing_per_free_way, std::size_t most) {
+    const float before_m = 2.0f * spacing_m, short_m = before_m / spacing_per_free_way;
+    if (short_m <= kLeastWay_m) return true;
+    measure_free_ways();
+    NearPoints near(spacing_m);
+    for (std::uint32_t k = 0; k < points_.size(); ++k) near.add(points_[k].position_m, k);
+    Rejected rejected(spacing_m);
+    const std::size_t parents = points_.size();
+    progress_.begin("light cache points", parents, "points");
+    for (std::size_t k = 0; k < parents; ++k) {
+      if (k % 256 == 0) stop_when_cancelled();
+      progress_.advance(1);
+      // The free way changes no faster than one moves.
+      if (!free_ways_[k].is_seen || free_ways_[k].mean_m > short_m + 0.5f * before_m) continue;
+      const CachePoints::Point parent = points_[k];
+      const Surroundings around(rays_, parent, kOver * spacing_m);
+      for (std::uint32_t tried = 0; tried < kTriedAround; ++tried) {
+        const SurfaceHit hit = around.find(tried, kAround * spacing_m);
+        if (!hit.hit) continue;
+        const SurfacePoint surface = surface_at(scene_, hit, -parent.geometric_normal, spacing_m);
+        if (is_taken(near, surface, spacing_m) || rejected.hold(surface)) continue;
+        rays_cast_ += kFreeWayRays;
+        const FreeWay way = free_way(surface.position_m, surface.geometric_normal, surface.normal, kFarWays * short_m);
+        if (!way.is_seen || way.mean_m >= short_m) {
+          rejected.add(surface, std::clamp(way.mean_m - short_m, 0.5f * spacing_m, spacing_m));
+          continue;
+        }
+        if (points_.size() == most) return false;
+        add(near, surface, spacing_m);
+      }
+    }
+    return true;
   }
 
   void keep(std::size_t count) {
     points_.resize(count);
-    free_ways_m_.resize(std::min(free_ways_m_.size(), count));
+    free_ways_.resize(std::min(free_ways_.size(), count));
   }
   std::size_t size() const { return points_.size(); }
   std::vector<CachePoints::Point> take() { return std::move(points_); }
   std::uint64_t rays_cast() const { return rays_cast_; }
 
  private:
-  // Dart throwing over fixed candidates. piece_matters(corners in metres) may skip a part of a triangle, matters(surface)
-  // a place.
-  template <typename PieceMatters, typename Matters>
-  bool fill(float spacing_m, std::size_t most, PieceMatters&& piece_matters, Matters&& matters) {
-    progress_.begin("light cache points", scene_.triangles.size(), "triangles");
-    NearPoints near(spacing_m);
-    for (std::uint32_t k = 0; k < points_.size(); ++k) near.add(points_[k].position_m, k);
-    std::vector<Corners> pieces;
-    for (std::uint32_t t = 0; t < scene_.triangles.size(); ++t) {
-      if (t % 256 == 0 && progress_.cancelled()) throw Interrupted("interrupted while lighting; nothing of it is kept");
-      progress_.advance(1);
-      const glm::uvec3 index = scene_.triangles[t];
-      const Corners whole_m{scene_.positions_m[index.x], scene_.positions_m[index.y], scene_.positions_m[index.z]};
-      const glm::vec3 cross = glm::cross(whole_m.b - whole_m.a, whole_m.c - whole_m.a);
-      const float twice_area = glm::length(cross);
-      if (!(twice_area > 0.0f)) continue;
-      SurfaceHit hit;
-      hit.triangle = t;
-      hit.geometric_normal = cross / twice_area;
-      pieces.assign(1, {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}});
-      while (!pieces.empty()) {
-        const Corners piece = pieces.back();
-        pieces.pop_back();
-        const auto in_metres = [&](glm::vec3 p) { return p.x * whole_m.a + p.y * whole_m.b + p.z * whole_m.c; };
-        const Corners piece_m{in_metres(piece.a), in_metres(piece.b), in_metres(piece.c)};
-        if (splits() && piece_m.longest() > 2.0f * kPieceSpacings * spacing_m) {
-          const glm::vec3 ab = 0.5f * (piece.a + piece.b), bc = 0.5f * (piece.b + piece.c), ca = 0.5f * (piece.c + piece.a);
-          for (const Corners& part : {Corners{piece.a, ab, ca}, {ab, piece.b, bc}, {ca, bc, piece.c}, {bc, ca, ab}}) {
-            pieces.push_back(part);
-          }
-          continue;
-        }
-        if (!piece_matters(piece_m)) continue;
-        if (!fill_piece(hit, piece, piece_m, spacing_m, most, near, matters)) return false;
-      }
-    }
-    return true;
+  void stop_when_cancelled() const {
+    if (progress_.cancelled()) throw Interrupted("interrupted while lighting; nothing of it is kept");
   }
 
-  // The first points' own sequence runs over whole triangles.
-  bool splits() const { return !free_ways_m_.empty(); }
-
-  template <typename Matters>
-  bool fill_piece(SurfaceHit& hit, const Corners& piece, const Corners& piece_m, float spacing_m, std::size_t most,
-                  NearPoints& near, Matters&& matters) {
-    const float squares = piece_m.area() / (spacing_m * spacing_m), lengths = piece_m.longest() / spacing_m;
-    const float wanted = std::max(squares * kCandidatesPerSquare, lengths * kCandidatesPerLength);
-    const auto candidates = 1u + static_cast<std::uint32_t>(std::min(wanted, 1e6f));
-    for (std::uint32_t k = 0; k < candidates; ++k) {
-      if (k % 256 == 255 && progress_.cancelled()) throw Interrupted("interrupted while lighting; nothing of it is kept");
-      const glm::vec2 square = r2_sequence(k);
-      const float root = std::sqrt(square.x), b = root * (1.0f - square.y), c = root * square.y;
-      const glm::vec3 place = (1.0f - b - c) * piece.a + b * piece.b + c * piece.c;
-      hit.barycentric = {place.y, place.z};
-      for (glm::vec3 towards : {-hit.geometric_normal, hit.geometric_normal}) {
-        const SurfacePoint surface = surface_at(scene_, hit, towards, spacing_m);
-        if (is_taken(near, surface, spacing_m) || (rejected_ && rejected_->hold(surface)) || !matters(surface)) continue;
-        if (is_hidden(surface)) {
-          if (rejected_) rejected_->add(surface, 0.5f * spacing_m);
-          continue;
-        }
-        if (points_.size() == most) return false;
-        near.add(surface.position_m, static_cast<std::uint32_t>(points_.size()));
-        points_.push_back({surface.position_m, surface.normal, surface.geometric_normal, spacing_m, {}});
-      }
-    }
-    return true;
+  void add(NearPoints& near, const SurfacePoint& surface, float spacing_m) {
+    near.add(surface.position_m, static_cast<std::uint32_t>(points_.size()));
+    points_.push_back({surface.position_m, surface.normal, surface.geometric_normal, spacing_m, {}});
   }
 
   bool is_taken(const NearPoints& near, const SurfacePoint& surface, float spacing_m) const {
@@ -251,31 +285,39 @@ class Scatter {
     return true;
   }
 
+  struct FreeWay {
+    float mean_m = 0.0f;   // harmonic
+    bool is_seen = false;  // from a distance; nobody looks where every ray soon ends
+  };
+
   // What is further than far_m counts as infinitely far.
-  float free_way_m(glm::vec3 position_m, glm::vec3 geometric_normal, glm::vec3 normal, float far_m) const {
+  FreeWay free_way(glm::vec3 position_m, glm::vec3 geometric_normal, glm::vec3 normal, float far_m) const {
     glm::vec3 tangent, bitangent;
     tangent_frame(normal, tangent, bitangent);
     const glm::vec3 origin = position_m + geometric_normal * ray_offset_m(position_m);
     const std::uint32_t turn = mix_place(position_m, 0);
+    FreeWay way;
     float sum = 0.0f;
     for (int k = 0; k < kFreeWayRays; ++k) {
       const glm::vec3 local = cosine_direction(rotate_pattern(hammersley(k, kFreeWayRays), turn));
       const glm::vec3 direction = tangent * local.x + bitangent * local.y + normal * local.z;
       if (glm::dot(direction, geometric_normal) <= 0.0f) continue;
-      const SurfaceHit hit = rays_.closest(origin, direction, 0.0f, far_m);
-      if (hit.hit) sum += 1.0f / std::max(hit.t, kLeastWay_m);
+      const SurfaceHit hit = rays_.closest(origin, direction, 0.0f, std::max(far_m, kSeen_m));
+      // Seen through its back, a surface is the inside of a solid.
+      way.is_seen |= !hit.hit || (hit.t > kSeen_m && glm::dot(hit.geometric_normal, direction) < 0.0f);
+      if (hit.hit && hit.t < far_m) sum += 1.0f / std::max(hit.t, kLeastWay_m);
     }
-    return kFreeWayRays / std::max(sum, kFreeWayRays / far_m);
+    way.mean_m = kFreeWayRays / std::max(sum, kFreeWayRays / far_m);
+    return way;
   }
 
   // Of the points that have none yet.
   void measure_free_ways() {
-    const std::size_t first = free_ways_m_.size();
-    free_ways_m_.resize(points_.size());
+    const std::size_t first = free_ways_.size();
+    free_ways_.resize(points_.size());
     tbb::parallel_for(first, points_.size(), [&](std::size_t k) {
       const CachePoints::Point& p = points_[k];
-      free_ways_m_[k] = free_way_m(p.position_m, p.geometric_normal, p.normal,
-                                   kFarWays * p.spacing_m / kSpacingPerFreeWay);
+      free_ways_[k] = free_way(p.position_m, p.geometric_normal, p.normal, kFarWays * p.spacing_m / kSpacingPerFreeWay);
     });
     rays_cast_ += (points_.size() - first) * kFreeWayRays;
   }
@@ -284,8 +326,7 @@ class Scatter {
   const RayScene& rays_;
   Progress& progress_;
   std::vector<CachePoints::Point> points_;
-  std::vector<float> free_ways_m_;    // of the first points
-  std::optional<Rejected> rejected_;  // while refining
+  std::vector<FreeWay> free_ways_;  // of the first points
   std::uint64_t rays_cast_ = 0;
 };
 
@@ -305,15 +346,16 @@ ScatteredPoints scatter_points(const Scene& scene, const RayScene& rays, double 
   for (result.spacing_m = static_cast<float>(spacing_m); !scatter.cover(result.spacing_m, max_points);) {
     result.spacing_m *= 1.2f;
   }
-  const std::size_t wide = scatter.size(), most = wide + std::max(wide, kFewPoints);
+  // Where all the scene is narrow, only the narrowest places have closer points.
+  const std::size_t wide = scatter.size(), closer = std::max(wide / 2, kFewPoints);
   float spacing_per_free_way = kSpacingPerFreeWay;
-  for (int tries = 0; tries < kMostTries; ++tries, spacing_per_free_way *= 2.0f) {
+  for (int tries = 0; tries < kMostTries; ++tries, spacing_per_free_way *= kNarrower) {
     bool fits = true;
     for (int halving = 1; halving <= kHalvings && fits; ++halving) {
-      fits = scatter.refine(std::ldexp(result.spacing_m, -halving), spacing_per_free_way, most);
+      fits = scatter.refine(std::ldexp(result.spacing_m, -halving), spacing_per_free_way, wide + closer);
     }
     if (fits) break;
-    scatter.keep(wide);  // where that is too many, only the narrowest places have closer points
+    scatter.keep(wide);
   }
   result.points = scatter.take();
   result.rays_cast = scatter.rays_cast();

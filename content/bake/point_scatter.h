@@ -1,7 +1,7 @@
-// Where the light cache has its points: a spacing apart on all surfaces that can be seen, both sides, and closer, down to
-// an eighth, where something is so near that light changes within a spacing: in gaps, behind blinds, at contacts. The
-// measure is the free way, the harmonic mean of the distance over the hemisphere, as in irradiance caching (Ward, Rubinstein
-// and Clear 1988), where light is known to change about as fast as that is short.
+// Where the light cache has its points: a spacing apart on all surfaces that can be seen, both sides, and closer, down
+// to an eighth, where something is so near that light changes within a spacing: in gaps, behind blinds, at contacts.
+// The measure is the free way, the harmonic mean of the distance over the hemisphere, as in irradiance caching (Ward,
+// Rubinstein and Clear 1988), where light is known to change about as fast as that is short.
 #pragma once
 
 #include <cstddef>
@@ -21,7 +21,7 @@ struct ScatteredPoints {
   std::uint64_t rays_cast = 0;
 };
 
-// spacing_m > 0 is raised until at most max_points have it; as many again (or 20,000) may be closer.
+// spacing_m > 0 is raised until at most max_points have it; half as many again (or 20,000) may be closer.
 // Deterministic. Throws
 // Interrupted.
 ScatteredPoints scatter_points(const Scene& scene, const RayScene& rays, double spacing_m, std::size_t max_points,

@@ -85,16 +85,17 @@ TEST(HeadsetOverlay, HiddenItHasNeitherLayerNorSwapchain) {
   }
 }
 
-// Monado waits for the application's queue when the panel's images go, while the mirror presents on a thread of its own.
+// Monado waits for the application's queue when the panel's images go, while the mirror presents on a thread of its
+// own.
 TEST(HeadsetOverlay, GoesWhileTheMirrorPresents) {
   if (!has_monado()) GTEST_SKIP() << "monado-service is not installed";
   const VirtualScreen screen;
   if (!screen.is_there()) GTEST_SKIP() << "Xvfb is not installed";
   // Menu, held, hides it.
-  const ScriptedWalk walk = walk_by_script(
-      "headset-overlay-goes", "destroy_ms=400;inputs=40:left/menu/click:1,90:left/menu/click:0",
-      "--frames 130 --validate --headset-overlay --mirror both",
-      "export SIMULATED_LEFT=simple SIMULATED_RIGHT=simple DISPLAY=:" + screen.number() + "\n");
+  const ScriptedWalk walk =
+      walk_by_script("headset-overlay-goes", "destroy_ms=400;inputs=40:left/menu/click:1,90:left/menu/click:0",
+                     "--frames 130 --validate --headset-overlay --mirror both",
+                     "export SIMULATED_LEFT=simple SIMULATED_RIGHT=simple DISPLAY=:" + screen.number() + "\n");
   ASSERT_EQ(walk.walk.run.exit_code, 0) << walk.walk.run.err;
   ASSERT_FALSE(walk.ended.empty());
   EXPECT_EQ(walk.ended.back()["swapchains_destroyed"], 1) << "the panel's, in mid-walk";
