@@ -36,6 +36,7 @@ ProbeSet ProbeSet::read(const Pack& pack, std::size_t level, DeviceSamples sampl
   const Manifest& manifest = pack.manifest();
   std::vector<DeviceProbe> probes;
   for (std::size_t room = 0; room < manifest.rooms.size(); ++room) {
+    if (manifest.rooms[room].levels.empty()) continue;  // a room without probes, as with a small --max-probes
     const std::size_t finest = manifest.rooms[room].levels.size() - 1;
     for (const ProbeMap& map : pack.read_level(room, std::min(level, finest)).probes) {
       probes.push_back(build_device_probe(map, PyramidMaker::kHost, samples));

@@ -282,6 +282,24 @@ TEST(Bench, WithoutASceneThePageSaysWhatIsMissing) {
   EXPECT_NE(read_text(out / "index.html").find("No scene was named"), std::string::npos);
 }
 
+TEST(Bench, TakesPacksWithRoomsWithoutProbes) {
+  const fs::path out = fresh_folder("bench-bare-room");
+  const std::string scene = (out / "rooms.glb").string(), pack = (out / "rooms.probes").string();
+  ASSERT_EQ(run_probewalk(out, {"scene", "two-rooms", "-o", scene, "-q"}).exit_code, 0);
+  ASSERT_EQ(run_probewalk(out, {"bake", scene, "-o", pack, "--resolution", "64", "--radiance-resolution", "16",
+                                "--max-probes", "1", "--samples", "8", "-q"})
+                .exit_code,
+            0);
+  const Json manifest = Json::parse(read_text(fs::path(pack) / "pack.json"));
+  int bare = 0;
+  for (const Json& entry : manifest["rooms"]) bare += entry["levels"].empty();
+  ASSERT_GT(bare, 0);
+  const RunResult run = run_probewalk(out, {"bench", pack, "-o", (out / "results").string(), "--views", "1", "--size", "16x12",
+                                            "--repeats", "1", "--no-variants", "--scene", scene, "--methods", "oat", "-q"});
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_TRUE(fs::exists(out / "results" / "results.json"));
+}
+
 TEST(Bench, RefusesWhatItCannotDo) {
   const fs::path out = fresh_folder("bench-bad");
   const auto code = [&](const std::vector<std::string>& more) { return run_probewalk(out, small_run(out / "results", more)).exit_code; };

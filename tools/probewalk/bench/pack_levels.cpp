@@ -10,6 +10,7 @@ std::vector<int> level_sizes(const Manifest& manifest) {
   std::vector<int> sizes(levels, 0);
   for (std::size_t level = 0; level < levels; ++level) {
     for (const RoomEntry& room : manifest.rooms) {
+      if (room.levels.empty()) continue;  // it has no probes
       const LevelEntry& entry = room.levels[std::min(level, room.levels.size() - 1)];
       sizes[level] = std::max(sizes[level], static_cast<int>(entry.geometry_size));
     }
@@ -23,6 +24,7 @@ PackLevel::PackLevel(const Device& device, const Pack& pack, std::size_t level, 
       store_(device, pack.manifest().grid, static_cast<std::uint32_t>(pack.manifest().probe_positions_m.size())) {
   const std::vector<RoomEntry>& rooms = pack.manifest().rooms;
   for (std::uint32_t room = 0; room < rooms.size(); ++room) {
+    if (rooms[room].levels.empty()) continue;
     RoomUpload upload;
     upload.room = room;
     upload.level = static_cast<std::uint32_t>(std::min(level, rooms[room].levels.size() - 1));
