@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <unordered_map>
 #include <utility>
 
 #include "content/bake/patterns.h"
@@ -33,82 +34,32 @@ constexpr float kFarWays = 8.0f;            // what is so much further than the 
 constexpr std::uint32_t kTriedAround = 48;  // places round a point whose free way is short
 constexpr float kAround = 2.4f;             // spacings away, at most
 constexpr float kOver = 0.25f;              // spacings over the surface: from there the next place is looked for
-constexpr std::size_t kFewPoints = 20000;   // cost next to nothing
+constexpr std::size_t kFewPoints = 20000;   // closer ones may be had by any scene, however small
 constexpr float kSeen_m = 0.3f;             // from where people look
 constexpr float kNarrower = 2.5f;           // is asked for with each try to have no more closer points than may be
 constexpr int kMostTries = 5;
-
-// Cells of a grid by a word each, in a table with open addressing.
-class CellTable {
- public:
-  static constexpr std::uint32_t kNone = ~0u;
-  // kNone where the cell was never touched.
-  std::uint32_t find(std::uint64_t key) const {
-    if (slots_.empty()) return kNone;
-    for (std::size_t slot = first_slot(key);; slot = (slot + 1) & (slots_.size() - 1)) {
-      if (slots_[slot].key == key || slots_[slot].value == kNone) return slots_[slot].value;
-    }
-  }
-  // Its value, which is kNone at first and must not stay so.
-  std::uint32_t& at(std::uint64_t key) {
-    if (2 * (count_ + 1) > slots_.size()) grow();
-    std::size_t slot = first_slot(key);
-    while (slots_[slot].value != kNone && slots_[slot].key != key) slot = (slot + 1) & (slots_.size() - 1);
-    count_ += slots_[slot].value == kNone;
-    slots_[slot].key = key;
-    return slots_[slot].value;
-  }
-
- private:
-  struct Slot {
-    std::uint64_t key = 0;
-    std::uint32_t value = kNone;
-  };
-  std::size_t first_slot(std::uint64_t key) const { return (key * 0x9E3779B97F4A7C15ull) >> 32 & (slots_.size() - 1); }
-  void grow() {
-    std::vector<Slot> old(std::max<std::size_t>(64, 2 * slots_.size()));
-    old.swap(slots_);
-    for (const Slot& from : old) {
-      if (from.value == kNone) continue;
-      std::size_t slot = first_slot(from.key);
-      while (slots_[slot].value != kNone) slot = (slot + 1) & (slots_.size() - 1);
-      slots_[slot] = from;
-    }
-  }
-  std::vector<Slot> slots_;
-  std::size_t count_ = 0;
-};
 
 // Points by cells as wide as their spacing.
 class NearPoints {
  public:
   explicit NearPoints(float cell_m) : cell_m_(cell_m) {}
-  glm::ivec3 cell_of(glm::vec3 position_m) const { return glm::ivec3(glm::floor(position_m / cell_m_)); }
-  void add(glm::vec3 position_m, std::uint32_t point) {
-    std::uint32_t& last = last_of_cell_.at(point_cell_key(cell_of(position_m)));
-    links_.push_back({point, last});
-    last = static_cast<std::uint32_t>(links_.size() - 1);
-  }
+  void add(glm::vec3 position_m, std::uint32_t point) { cells_[point_cell_key(cell_of(position_m))].push_back(point); }
   // Whether any point less than a cell away passes the test, and some others.
   template <typename Test>
   bool any_near(glm::vec3 position_m, Test&& test) const {
     const glm::ivec3 centre = cell_of(position_m);
     for (int k = 0; k < 27; ++k) {
-      std::uint32_t link = last_of_cell_.find(point_cell_key(centre + glm::ivec3(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1)));
-      for (; link != CellTable::kNone; link = links_[link].before) {
-        if (test(links_[link].point)) return true;
-      }
+      const auto cell = cells_.find(point_cell_key(centre + glm::ivec3(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1)));
+      if (cell != cells_.end() && std::ranges::any_of(cell->second, test)) return true;
     }
     return false;
   }
 
  private:
-  struct Link {
-    std::uint32_t point, before;  // in the same cell
-  };
+  glm::ivec3 cell_of(glm::vec3 position_m) const { return glm::ivec3(glm::floor(position_m / cell_m_)); }
+
   float cell_m_;
-  CellTable last_of_cell_;
-  std::vector<Link> links_;
+  std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> cells_;
 };
 
 // Places that were looked at in vain: what is near them need not be looked at again.

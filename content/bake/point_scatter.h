@@ -21,9 +21,8 @@ struct ScatteredPoints {
   std::uint64_t rays_cast = 0;
 };
 
-// spacing_m > 0 is raised until at most max_points have it; half as many again (or 20,000) may be closer.
-// Deterministic. Throws
-// Interrupted.
+// spacing_m > 0 is raised until at most max_points have it; half as many again, or 20,000, may be closer.
+// Deterministic. Throws Interrupted.
 ScatteredPoints scatter_points(const Scene& scene, const RayScene& rays, double spacing_m, std::size_t max_points,
                                Progress& progress);
 

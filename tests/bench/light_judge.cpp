@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <exception>
@@ -75,7 +76,9 @@ void judge(const std::filesystem::path& file, const Options& options) {
   LightOptions light_options;
   light_options.samples = options.samples;
   light_options.cache_spacing_m = 0.001 * options.spacing_mm;
+  const auto begun = std::chrono::steady_clock::now();
   const LightField field(scene, rays, light_options, progress);
+  const double light_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
   light_options.bounces = 0;
   const LightField unreflected(scene, rays, light_options, progress);
   const Emitters& emitters = field.direct().emitters();
@@ -144,8 +147,9 @@ void judge(const std::filesystem::path& file, const Options& options) {
   double all = 0.0;
   for (const Place& place : places) all += place.judged[kAll];
   const double n = double(places.size()), dark = kDark * all / n;
-  fmt::print("{}: {} places, {} paths each, {} patches, {} lights\n", file.string(), places.size(), options.paths,
-             emitters.patches.size(), emitters.lights.size());
+  fmt::print("{}: {} places, {} paths each, {} patches, {} lights; {} cache points, made and lit in {:.1f} s\n",
+             file.string(), places.size(), options.paths, emitters.patches.size(), emitters.lights.size(),
+             field.cache_points(), light_s);
   fmt::print("  {:<24}{:>9}{:>10}{:>9}{:>13}{:>11}{:>13}\n", "shares of all light", "judged", "bias", "+-",
              "of it judge", "RMS error", "judge's RMS");
   for (int part = 0; part < kParts; ++part) {
@@ -175,10 +179,11 @@ void judge(const std::filesystem::path& file, const Options& options) {
     const Place& place = places[std::size_t(k)];
     const glm::vec3 p = place.surface.position_m, g = place.surface.geometric_normal;
     const double near_m = mean_free_way_m(rays, p, g);
-    fmt::print("  ({:.3f} {:.3f} {:.3f}) facing ({:+.2f} {:+.2f} {:+.2f}), {:.3f} m free around: baked {:.4f} for {:.4f} "
-               "+- {:.4f}, {:+.4f} of all light\n",
-               p.x, p.y, p.z, g.x, g.y, g.z, near_m, place.baked[kAll] * n / all, place.judged[kAll] * n / all,
-               std::sqrt(place.variance[kAll]) * n / all, (place.baked[kAll] - place.judged[kAll]) / all);
+    fmt::print(
+        "  ({:.3f} {:.3f} {:.3f}) facing ({:+.2f} {:+.2f} {:+.2f}), {:.3f} m free around: baked {:.4f} for {:.4f} "
+        "+- {:.4f}, {:+.4f} of all light\n",
+        p.x, p.y, p.z, g.x, g.y, g.z, near_m, place.baked[kAll] * n / all, place.judged[kAll] * n / all,
+        std::sqrt(place.variance[kAll]) * n / all, (place.baked[kAll] - place.judged[kAll]) / all);
   }
   std::fflush(stdout);
 }
@@ -186,10 +191,8 @@ void judge(const std::filesystem::path& file, const Options& options) {
 int run(const std::vector<std::string>& arguments) {
   Options options;
   std::vector<std::filesystem::path> scenes;
-  const std::map<std::string, int*> numbers{{"--texels", &options.texels},
-                                            {"--paths", &options.paths},
-                                            {"--probes", &options.probes},
-                                            {"--samples", &options.samples},
+  const std::map<std::string, int*> numbers{{"--texels", &options.texels},         {"--paths", &options.paths},
+                                            {"--probes", &options.probes},         {"--samples", &options.samples},
                                             {"--spacing-mm", &options.spacing_mm}, {"--worst", &options.worst}};
   for (std::size_t k = 0; k < arguments.size(); ++k) {
     const auto number = numbers.find(arguments[k]);

@@ -29,7 +29,7 @@ table { border-collapse: collapse; width: 100%; font-variant-numeric: tabular-nu
 th, td { padding: 5px 12px 5px 0; text-align: right; border-bottom: 1px solid var(--rule); vertical-align: top; }
 th { color: var(--soft); font-weight: 500; font-size: 13px; } th:first-child, td:first-child, td.words, th.words { text-align: left; }
 td.words { overflow-wrap: anywhere; } td .soft { font-size: 13px; }
-table.numbers td { white-space: nowrap; }
+table.numbers td { white-space: nowrap; } table.numbers th, table.numbers td { padding-right: 7px; } table.numbers { font-size: 14px; }
 .key { display: inline-block; width: 12px; height: 12px; border-radius: 2px; margin: 0 5px 0 14px; vertical-align: -1px; }
 .key:first-child { margin-left: 0; }
 .charts { display: grid; grid-template-columns: repeat(auto-fit, minmax(300px, 1fr)); gap: 14px; }

@@ -294,10 +294,7 @@ TEST(LightField, AgreesWithPathsThatAreFollowed) {
   scene.lights.push_back(plain::point_light({-1.0f, 2.2f, 2.0f}, 120.0f));
   const RayScene rays(scene);
   SilentProgress progress;
-  LightOptions options = quick();
-  options.samples = 128;
-  options.cache_spacing_m = 0.25;
-  const LightField light(scene, rays, options, progress);
+  const LightField light(scene, rays, LightOptions(), progress);
   double error = 0.0, sum_cached = 0.0, sum_followed = 0.0;
   int count = 0;
   const glm::vec3 eye(0.3f, 1.5f, -0.8f);
@@ -326,12 +323,9 @@ TEST(LightField, FadesIntoANarrowSlot) {
   plain::add_quad(scene, {-kDeep_m, kHigh_m, -1}, {0, kHigh_m, -1}, {0, kHigh_m, 1}, {-kDeep_m, kHigh_m, 1}, 0);
   plain::add_quad(scene, {-kDeep_m, 0, -1}, {-kDeep_m, kHigh_m, -1}, {-kDeep_m, kHigh_m, 1}, {-kDeep_m, 0, 1}, 0);
   scene.sky.zenith_cd_m2 = scene.sky.horizon_cd_m2 = glm::vec3(100.0f);
-  const RayScene rays(scene);
+  const RayScene rays(scene, "sse2");  // on another processor the points would lie a little otherwise
   SilentProgress progress;
-  LightOptions options = quick();
-  options.samples = 128;
-  options.cache_spacing_m = 0.25;
-  const LightField light(scene, rays, options, progress);
+  const LightField light(scene, rays, LightOptions(), progress);
   EXPECT_LT(light.cache_points(), 2500u) << "closer points in the slot alone";
   std::vector<double> cached, followed;
   for (float x : {-0.03f, -0.09f, -0.15f}) {
@@ -342,7 +336,7 @@ TEST(LightField, FadesIntoANarrowSlot) {
       cached_here.push_back(double(luminance(light.along(eye, down, 0.001f))));
       followed_here.push_back(double(luminance(follow_paths(scene, rays, eye, down, 20000))));
     }
-    // Points 250 mm apart: 2.4, 5.9 and 11 times too bright.
+    // With points 250 mm apart alone: 1.6, 2.9 and 4.3 times.
     EXPECT_NEAR(agreement(cached_here, followed_here).energy, 1.0, 0.5) << "at " << x;
     cached.insert(cached.end(), cached_here.begin(), cached_here.end());
     followed.insert(followed.end(), followed_here.begin(), followed_here.end());

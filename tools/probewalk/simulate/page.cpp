@@ -57,8 +57,8 @@ std::string plots(const PageFacts& facts, const Trial& trial) {
 
 std::string policies(const Trial& trial) {
   std::string html =
-      "<div class=\"scroll\"><table class=\"numbers\"><tr><th>policy</th><th>lacks, octaves</th><th>more than the best</th><th>coarse "
-      "frames</th><th>longest</th><th>frames with a hole</th><th>with a dark room in view</th><th>need to resident "
+      "<div class=\"scroll\"><table class=\"numbers\"><tr><th>policy</th><th>lacks, octaves</th><th>more than the "
+      "best</th><th>coarse frames</th><th>longest</th><th>frames with a hole</th><th>with a dark room in view</th><th>need to resident "
       "p50</th><th>p99</th><th>moved</th>"
       "<th>most held</th><th>over budget</th><th>loads</th><th>evictions</th><th>of what was in "
       "view</th><th>failed</th><th>a decision p50</th>"
