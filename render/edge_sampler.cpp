@@ -40,7 +40,7 @@ EdgeSampler::EdgeSampler(const Device& device, const StorageImageSet& images, co
           device, &images,
           tracing_module(options.choice, spirv::k_sample_edges_comp, spirv::k_sample_edges_baseline_comp),
           tracing_constants({options.aov ? VK_TRUE : VK_FALSE, options.interleave, options.samples}, options.choice,
-                            options.shared_openings))) {
+                            {.shared_openings = options.shared_openings}))) {
 }
 
 void EdgeSampler::record(VkCommandBuffer commands, VkDeviceAddress frame, VkDeviceAddress openings,

@@ -41,6 +41,8 @@ struct PushConstants {
   std::uint32_t first = 0;        // of what a dispatch makes, where it makes a part
   VkDeviceAddress list = 0;  // what a pass has beside: edge pixels (shaders/shared/edge_list.h), guides (guides.h)
   VkDeviceAddress openings = 0;  // what first probes are chosen from (shaders/openings.glsl)
+  VkDeviceAddress surfaces = 0;  // what the first of two eyes has seen, and from where on the second one looks through it
+  VkDeviceAddress starts = 0;    // (shaders/first_eye.glsl)
 };
 
 // Owns a pipeline and its layout.

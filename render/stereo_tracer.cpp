@@ -25,8 +25,11 @@ Image make_output(const Device& device, const TracerOptions& options, VkFormat f
       device, {format, options.extent_px, options.views, VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT});
 }
 
-const TracerOptions& checked(const TracerOptions& options) {
+TracerOptions checked(TracerOptions options) {
   check_setup(options.setup);
+  options.second_from_first = options.second_from_first &&
+                              SecondEye::suits(options.views, options.foveation.has_value(), options.setup.choice) &&
+                              SecondEye::fits(options.extent_px);
   return options;
 }
 
@@ -49,12 +52,18 @@ StereoTracer::StereoTracer(const Device& device, const TracerOptions& options)
           tracing_module(options.setup.choice, spirv::k_trace_stereo_comp, spirv::k_trace_stereo_baseline_comp),
           tracing_constants({options.aov ? VK_TRUE : VK_FALSE, interleave_, options.foveation ? VK_TRUE : VK_FALSE,
                              options.masked ? VK_TRUE : VK_FALSE},
-                            options.setup.choice, options.shared_openings))) {
+                            options.setup.choice, {options.shared_openings, options_.second_from_first}))) {
   if (options.shared_openings) {
     constexpr std::size_t kCorners = std::extent_v<decltype(f32::CellCandidates::probe)>;
     openings_ = Buffer(device, sizeof(f32::CandidatePlace) * kCorners * options.views, BufferMemory::kDevice);
     find_openings_.emplace(
         Pipeline::compute(device, nullptr, spirv::k_find_openings_comp, tracing_constants({}, options.setup.choice)));
+  }
+  if (options_.second_from_first) {
+    second_eyes_ = std::make_unique<SecondEye>(
+        device, images_,
+        SecondEyeOptions{options.extent_px, options.views / 2, options.aov, interleave_, options.masked,
+                         options.shared_openings, options.setup.choice});
   }
   if (options.foveation) {
     fill_.emplace(Pipeline::compute(device, &images_, spirv::k_fill_blocks_comp,
@@ -97,9 +106,13 @@ void StereoTracer::record(VkCommandBuffer commands, VkDeviceAddress frame, VkExt
     barrier.dstAccessMask = VK_ACCESS_2_SHADER_STORAGE_READ_BIT;
     vkCmdPipelineBarrier2(commands, &dependency);
   }
-  pipeline_.bind(commands, &images_, push);
   const std::uint32_t columns = (extent_px.width + kTile - 1) / kTile;
-  vkCmdDispatch(commands, columns, tile_rows(extent_px.height, options_.views, interleave_), options_.views);
+  if (second_eyes_) second_eyes_->lend(push);
+  pipeline_.bind(commands, &images_, push);
+  const std::uint32_t views = second_eyes_ ? options_.views / 2 : options_.views;
+  const std::uint32_t beyond = second_eyes_ ? SecondEye::columns_beyond(extent_px) : 0;
+  vkCmdDispatch(commands, columns + beyond, tile_rows(extent_px.height, views, interleave_), views);
+  if (second_eyes_) second_eyes_->record(commands, frame, push.openings, extent_px);
 
   if (fill_) {
     barrier.srcStageMask = barrier.dstStageMask = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;

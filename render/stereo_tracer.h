@@ -13,6 +13,7 @@
 #include "render/foveation.h"
 #include "render/image.h"
 #include "render/pipeline.h"
+#include "render/second_eye.h"
 #include "render/tracer_choice.h"
 
 namespace probewalk {
@@ -28,6 +29,9 @@ struct TracerOptions {
   // Rays of a view read what their first probe is chosen from instead of finding it each for itself: the same answers to
   // the bit. Off because it was not measurably faster; `probewalk bench` measures it.
   bool shared_openings = false;
+  // Of each pair of views the second goes by what the first has seen where that answers its rays. Changes nothing where
+  // the views do not suit it (second_eye.h). Off here, so that views are traced each by itself unless somebody asks.
+  bool second_from_first = false;
 };
 
 // Distance of a miss, metres.
@@ -60,7 +64,8 @@ class StereoTracer {
   StorageImageSet images_;
   Buffer openings_;  // with shared_openings
   std::optional<Pipeline> find_openings_;
-  Pipeline pipeline_;
+  Pipeline pipeline_;                        // of all views, or of the first of each pair
+  std::unique_ptr<SecondEye> second_eyes_;  // with second_from_first
   std::optional<Pipeline> fill_;        // with foveation
   std::unique_ptr<EdgeSampler> edges_;  // with more than one sample
 };

@@ -27,7 +27,7 @@ std::span<const std::uint32_t> tracing_module(const TracerChoice& choice, std::s
 }
 
 std::vector<std::uint32_t> tracing_constants(std::initializer_list<std::uint32_t> own, const TracerChoice& choice,
-                                             bool shared_openings) {
+                                             SharedWork shared) {
   std::vector<std::uint32_t> constants(own);
   if (constants.size() > kFirstChoiceConstant) throw std::logic_error("a tracing shader has four constants of its own");
   constants.resize(kFirstChoiceConstant, 0);
@@ -42,8 +42,9 @@ std::vector<std::uint32_t> tracing_constants(std::initializer_list<std::uint32_t
     constants.push_back(static_cast<std::uint32_t>(value));
   }
   constants.resize(kOpeningsConstant, 0);
-  constants.push_back(shared_openings ? 1 : 0);
+  constants.push_back(shared.shared_openings ? 1 : 0);
   constants.push_back(choice.samples != DeviceSamples::kFloat ? 1 : 0);
+  constants.push_back(shared.first_eyes ? 1 : 0);
   return constants;
 }
 

@@ -20,6 +20,12 @@ struct TracerSetup {
   const BaselineStore* baselines = nullptr;
 };
 
+// What a view's rays have in common, or leave for another view.
+struct SharedWork {
+  bool shared_openings = false;  // what first probes are chosen from (shaders/openings.glsl)
+  bool first_eyes = false;       // what they see (shaders/first_eye.glsl)
+};
+
 // Throws std::logic_error when the choice needs maps and there are none.
 void check_setup(const TracerSetup& setup);
 
@@ -28,10 +34,9 @@ std::span<const std::uint32_t> tracing_module(const TracerChoice& choice, std::s
                                               std::span<const std::uint32_t> baseline);
 
 // Specialisation constants of a tracing shader: `own` from 0 on, at most four of them, then the choice's from 4 on, as
-// shaders/shared/tracer_glsl.h numbers them, then whether views' rays share what their first probes are chosen from
-// (shaders/openings.glsl), and whether samples can be in tiles.
+// shaders/shared/tracer_glsl.h numbers them, and whether samples can be in tiles, and what is shared.
 std::vector<std::uint32_t> tracing_constants(std::initializer_list<std::uint32_t> own, const TracerChoice& choice,
-                                             bool shared_openings = false);
+                                             SharedWork shared = {});
 
 // Address for BatchConstants and FrameConstants; 0 = none.
 glm::uvec2 baseline_address(const TracerSetup& setup);

@@ -6,17 +6,17 @@ layout(constant_id = 16) const int kSharedOpenings = 0;
 
 layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer Openings { CandidatePlace v[]; };
 
-// -1: no probe is resident at the cell, or the ray is to look itself.
-int opening_probe(uvec2 address, int view, vec3 direction) {
-  int probe = -1;
+// No probe, where none is resident at the cell or the ray is to look itself.
+RayHint opening_hint(uvec2 address, int view, vec3 direction) {
+  RayHint hint = no_hint();
   if (kSharedOpenings != 0) {
     float best = -PW_NEVER;
     PW_UNROLL for (int k = 0; k < PW_CANDIDATES; ++k) {
       CandidatePlace place = Openings(address).v[view * PW_CANDIDATES + k];
       float score = candidate_score(place, kRuleFirst, direction);
-      probe = score > best ? place.probe : probe;
+      hint.probe = score > best ? place.probe : hint.probe;
       best = max(score, best);
     }
   }
-  return probe;
+  return hint;
 }

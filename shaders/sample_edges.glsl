@@ -43,7 +43,7 @@ void add_ray(FrameConstants constants, int view_index, vec2 point_px, float weig
   vec3 direction = view_ray_through(view, point_px, constants.size_px);
   RayAnswer answer = pipeline_trace(constants.baseline_address, constants.grid, constants.trace, view.origin_hi_m,
                                     view.origin_lo_m, direction, choice_shift(view),
-                                    opening_probe(openings_address, view_index, direction));
+                                    opening_hint(openings_address, view_index, direction));
   uint reads;
   vec3 radiance = pipeline_radiance(constants.grid, constants.trace, answer, view.origin_hi_m, view.origin_lo_m,
                                     direction, view.pixel_angle_rad, reads);

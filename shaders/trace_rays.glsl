@@ -21,7 +21,7 @@ void main() {
   if (index >= batch.ray_count) return;
   BatchRay ray = Rays(batch.rays_address).v[index];
   RayAnswer answer = pipeline_trace(batch.baseline_address, batch.grid, batch.trace, ray.origin_hi_m, ray.origin_lo_m,
-                                    ray.unit_direction, vec3(0.0), -1);
+                                    ray.unit_direction, vec3(0.0), no_hint());
   BatchAnswer result;
   result.radiance = pipeline_radiance(batch.grid, batch.trace, answer, ray.origin_hi_m, ray.origin_lo_m,
                                       ray.unit_direction, batch.spread_rad, result.attribute_reads);

@@ -1,5 +1,6 @@
 // The body of trace_stereo.comp and trace_stereo_baseline.comp.
 #include "shared/foveation.h"
+#include "shared/seen_surface.h"
 #include "shared/tracer_glsl.h"
 #include "shared/view_ray.h"
 #include "openings.glsl"
@@ -14,6 +15,9 @@ layout(constant_id = 1) const int kInterleave = 1;
 // Tiles may have one ray for several pixels (foveation.h); fill_blocks.comp fills in the others.
 layout(constant_id = 2) const bool kFoveated = false;
 
+// Only the first of each pair of views is traced, and what it sees kept for the second (first_eye.glsl).
+layout(constant_id = 18) const bool kFirstEyes = false;
+
 // Some tiles are hidden by the headset's optics: black, without rays.
 layout(constant_id = 3) const bool kMasked = false;
 
@@ -26,18 +30,53 @@ layout(push_constant) uniform Push {
   uvec2 frame_address;
   uvec2 unused[2];
   uvec2 openings_address;
+  uvec2 surfaces_address;
+  uvec2 starts_address;
 };
 
+#include "first_eye.glsl"
 #include "hidden_tiles.glsl"
 
 const float kHiddenDistance_m = 1e30;  // as of a miss
+
+void keep_surface(ivec3 texel, ivec2 size_px, RayAnswer answer, float cosine) {
+  SeenSurface surface;
+  surface.plane = answer.plane;
+  surface.answer = answer.probe < 0 ? kSeenNothing : uint(answer.probe);
+  if (answer.cls == kClassMiss) surface.answer |= kSeenMiss;
+  if (answer.cls == kClassUnknown) surface.answer |= kSeenUnknown;
+  if (answer.environment) surface.answer |= kSeenEnvironment;
+  surface.depth_m = answer.cls == kClassMiss ? kSeenFar_m : answer.t * cosine;
+  SeenSurfaces(surfaces_address).v[seen_pixel(texel, size_px)] = surface;
+}
+
+// A ray for each tile of the margin (seen_surface.h). Groups beyond the picture, in every eighth row of them, have eight
+// columns of tiles each.
+void look_beyond(FrameConstants constants, int view_index, ivec2 group) {
+  ivec2 size_px = constants.size_px;
+  int columns = seen_columns(size_px), lane = int(gl_LocalInvocationIndex);
+  ivec2 tile = ivec2((group.x - columns) * 8 + lane % 8, group.y + lane / 8);
+  if (group.y % 8 != 0 || tile.x >= seen_margin(columns) || tile.y * kSeenTile >= size_px.y) return;
+  ViewConstants view = constants.view[view_index];
+  float pixels_m = eye_pixels_m(view, constants.view[view_index + 1], size_px);
+  float depth_m = kSeenFar_m;
+  // Not where only what is closer than expected could matter.
+  if (float(tile.x * kSeenTile) * kUnseen_m <= pixels_m) {
+    vec2 centre_px = (vec2(tile) + 0.5) * float(kSeenTile) + vec2(float(columns * kSeenTile), 0.0);
+    RayAnswer answer = pipeline_trace(constants.baseline_address, constants.grid, constants.trace, view.origin_hi_m,
+                                      view.origin_lo_m, view_ray_through(view, centre_px, size_px), choice_shift(view),
+                                      no_hint());
+    if (answer.cls != kClassMiss) depth_m = answer.t * view_cosine_through(view, centre_px, size_px);
+  }
+  SeenStarts(starts_address).v[seen_row(view_index / 2, tile.y, size_px) + columns + tile.x] = floatBitsToUint(depth_m);
+}
 
 void main() {
   Frame frame = Frame(frame_address);
   int rows = int(gl_NumWorkGroups.y), row = int(gl_WorkGroupID.z) * rows + int(gl_WorkGroupID.y);
   int part = rows * int(gl_NumWorkGroups.z) / kInterleave;
   row = row % part * kInterleave + row / part;
-  int view_index = row / rows;
+  int view_index = row / rows * (kFirstEyes ? 2 : 1);
   ivec2 tile_px = ivec2(int(gl_WorkGroupID.x), row % rows) * 8;
   ivec2 size_px = frame.constants.size_px;
   ViewConstants view = frame.constants.view[view_index];
@@ -47,7 +86,14 @@ void main() {
     if (texel.x >= size_px.x || texel.y >= size_px.y) return;
     imageStore(radiance_image, texel, vec4(0.0, 0.0, 0.0, 1.0));
     imageStore(distance_image, texel, vec4(kHiddenDistance_m));
+    if (kFirstEyes) {
+      SeenSurfaces(surfaces_address).v[seen_pixel(texel, size_px)] = SeenSurface(vec3(0.0), kSeenNothing, kUnseen_m);
+    }
     if (kWithAov) imageStore(aov_image, texel, uvec4(uint(kClassMiss), 0xffffffffu, 0u, 0u));
+    return;
+  }
+  if (kFirstEyes && tile_px.x >= size_px.x) {
+    look_beyond(frame.constants, view_index, tile_px / 8);
     return;
   }
   // A coarse tile's rays are its first lanes', so that the others' parts of the group end at once.
@@ -62,7 +108,7 @@ void main() {
   vec3 direction = view_ray_through(view, vec2(pixel) + 0.5 * float(rate), size_px);
   RayAnswer answer = pipeline_trace(frame.constants.baseline_address, grid, dials, view.origin_hi_m, view.origin_lo_m,
                                     direction, choice_shift(view),
-                                    opening_probe(openings_address, view_index, direction));
+                                    opening_hint(openings_address, view_index, direction));
   uint reads;
   vec3 radiance = pipeline_radiance(grid, dials, answer, view.origin_hi_m, view.origin_lo_m, direction,
                                     view.pixel_angle_rad * float(rate), reads);
@@ -70,6 +116,7 @@ void main() {
   ivec3 texel = ivec3(block_keeper(pixel, rate, size_px), view_index);
   imageStore(radiance_image, texel, vec4(min(radiance * dials.radiance_scale, vec3(kPictureMax)), 1.0));
   imageStore(distance_image, texel, vec4(answer.t));
+  if (kFirstEyes) keep_surface(texel, size_px, answer, view_ray_cosine(view, pixel, size_px));
   if (kWithAov) {
     imageStore(aov_image, texel,
                uvec4(uint(answer.cls), uint(answer.probe), answer.lookups, answer.tries | 1u << 8 | reads << 16));

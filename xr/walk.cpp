@@ -10,6 +10,8 @@
 #include <utility>
 
 #include "content/error.h"
+#include "render/foveation.h"
+#include "render/second_eye.h"
 #include "xr/headset_watch.h"
 #include "xr/latency/clock.h"
 #include "xr/latency/run_files.h"
@@ -66,6 +68,9 @@ RunInfo run_info(const WalkOptions& options, const Display& display) {
   if (settings != "default") info.method += " (" + settings + ")";
   info.samples = options.samples;
   info.foveation = options.foveation;
+  const bool shares = options.second_from_first &&
+                      SecondEye::suits(info.views, foveation_of(options.foveation).has_value(), options.choice);
+  info.second_eye = shares ? "from the first" : "traced";
   info.pack = options.pack.filename().empty() ? options.pack.parent_path().filename() : options.pack.filename();
   info.build = read_build_info();
   info.started_utc = utc_now();

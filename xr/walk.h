@@ -38,6 +38,7 @@ struct WalkOptions {
   std::optional<bool> eye_scale_adapts;  // to the device's time; default: headset only
   double eye_scale = 1.0;                // of one that does not
   std::string foveation = "off";         // a name of foveation_levels()
+  bool second_from_first = true;         // eyes: as in TracerOptions
   TracerChoice choice;                   // how rays are answered
   const BaselineMaps* maps = nullptr;    // of a choice that needs some
   std::optional<double> exposure_ev;     // default: the pack's

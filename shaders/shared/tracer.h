@@ -204,13 +204,25 @@ PW_FUNCTION CellCandidates cell_candidates(GridConstants grid, TraceConstants di
   return list;
 }
 
+// What is known of a ray before it is traced.
+struct RayHint {
+  int probe;    // that it asks first, as the rules would choose it; -1: they are to choose
+  real t_free;  // nothing is met before; 0: nothing is known
+};
+
+PW_FUNCTION RayHint no_hint() {
+  RayHint hint;
+  hint.probe = -1;
+  hint.t_free = real(0);
+  return hint;
+}
+
 // Traces a ray from origin_hi + origin_lo (metres, scene coordinates; hi is the float nearest, lo the rest) along the
 // unit direction d. Probes are tried one after the other, each from where the last one's knowledge ended; candidates come
 // from the cell of the current point, then from the cells one and two spacings ahead, then from the origin's; the start
-// test skips those that cannot see the current point (design: fewer-tries, 1). `opening`: the probe that it asks first, as
-// the rules would choose it; -1: they are to choose.
+// test skips those that cannot see the current point (design: fewer-tries, 1).
 PW_FUNCTION RayAnswer trace_ray(PW_WALK_PARAMETER GridConstants grid, TraceConstants dials, SelectionRules rules,
-                                real3 origin_hi, real3 origin_lo, real3 d, int start_level, int opening) {
+                                real3 origin_hi, real3 origin_lo, real3 d, int start_level, RayHint hint) {
   RayAnswer answer;
   answer.cls = kClassUnknown;
   answer.t = real(0);
@@ -226,15 +238,16 @@ PW_FUNCTION RayAnswer trace_ray(PW_WALK_PARAMETER GridConstants grid, TraceConst
   int failures = 0;
   const int max_tries = min(int(dials.max_tries), PW_TRIES_LIMIT);
   const real ahead = real(grid.spacing_mean_m);
-  real t = real(0);
+  real t = hint.t_free;
   // Stages 0 to 2 look where the ray has got to, and ahead of there; stage 3 at its origin.
   const int first_stage = rules.advance != 0 ? 0 : 3;
   int stage = first_stage;
   // Every turn walks once. Stages are gone through within it, so that rays that are traced side by side walk together.
   while (int(answer.tries) < max_tries) {
-    int chosen = answer.tries == 0u ? opening : -1;
+    int chosen = answer.tries == 0u ? hint.probe : -1;
     for (; chosen < 0 && stage < 4; stage += chosen < 0 ? 1 : 0) {
-      real t_cell = stage == 3 ? real(0) : t + real(stage) * ahead;
+      // The first probe is chosen from the origin, whatever is known of the ray: the same as without.
+      real t_cell = stage == 3 ? real(0) : (answer.tries == 0u ? real(0) : t) + real(stage) * ahead;
       CellCandidates cell = cell_candidates(grid, dials, rules, chosen_from + d * t_cell, d);
       int doubtful = -1;
       for (int k = best_candidate(cell); k < PW_CANDIDATES && chosen < 0; k = best_candidate(cell)) {
@@ -308,7 +321,7 @@ PW_FUNCTION RayAnswer trace_ray(PW_WALK_PARAMETER GridConstants grid, TraceConst
 
 PW_FUNCTION RayAnswer trace_ray(PW_WALK_PARAMETER GridConstants grid, TraceConstants dials, SelectionRules rules,
                                 real3 origin_hi, real3 origin_lo, real3 d, int start_level) {
-  return trace_ray(PW_WALK_ARGUMENT grid, dials, rules, origin_hi, origin_lo, d, start_level, -1);
+  return trace_ray(PW_WALK_ARGUMENT grid, dials, rules, origin_hi, origin_lo, d, start_level, no_hint());
 }
 
 #ifndef PW_BASELINES

@@ -67,7 +67,7 @@ SelectionRules pipeline_rules(vec3 choice_shift_m) {
   return rules;
 }
 
-// A ray's answer and its radiance as the pipeline traces. baseline_address: of BaselineConstants. opening: see trace_ray.
+// A ray's answer and its radiance as the pipeline traces. baseline_address: of BaselineConstants. hint: see trace_ray.
 #ifdef PW_BASELINES
 layout(constant_id = 12) const int kBaselineMethod = kMethodEnvironment;
 layout(constant_id = 13) const int kBaselineEpsilonRule = kEpsilonFixed;
@@ -75,7 +75,7 @@ layout(constant_id = 14) const int kBaselineRejectBackfaces = 0;
 layout(constant_id = 15) const int kBaselineBackwardTrace = 0;
 
 RayAnswer pipeline_trace(uvec2 baseline_address, GridConstants grid, TraceConstants dials, vec3 origin_hi,
-                         vec3 origin_lo, vec3 direction, vec3 choice_shift_m, int opening) {
+                         vec3 origin_lo, vec3 direction, vec3 choice_shift_m, RayHint hint) {
   BaselineContext context;
   context.method = kBaselineMethod;
   context.epsilon_rule = kBaselineEpsilonRule;
@@ -84,7 +84,7 @@ RayAnswer pipeline_trace(uvec2 baseline_address, GridConstants grid, TraceConsta
   // An environment map needs no constants, and may be given none.
   if (kBaselineMethod != kMethodEnvironment) context.constants = PwBaselineDials(baseline_address).v;
   return trace_ray(context, grid, dials, pipeline_rules(choice_shift_m), origin_hi, origin_lo, direction, kPipelineStartLevel,
-                   opening);
+                   hint);
 }
 
 vec3 pipeline_radiance(GridConstants grid, TraceConstants dials, RayAnswer answer, vec3 origin_hi, vec3 origin_lo,
@@ -93,9 +93,9 @@ vec3 pipeline_radiance(GridConstants grid, TraceConstants dials, RayAnswer answe
 }
 #else
 RayAnswer pipeline_trace(uvec2 baseline_address, GridConstants grid, TraceConstants dials, vec3 origin_hi,
-                         vec3 origin_lo, vec3 direction, vec3 choice_shift_m, int opening) {
+                         vec3 origin_lo, vec3 direction, vec3 choice_shift_m, RayHint hint) {
   return trace_ray(grid, dials, pipeline_rules(choice_shift_m), origin_hi, origin_lo, direction, kPipelineStartLevel,
-                   opening);
+                   hint);
 }
 
 vec3 pipeline_radiance(GridConstants grid, TraceConstants dials, RayAnswer answer, vec3 origin_hi, vec3 origin_lo,

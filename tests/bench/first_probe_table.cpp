@@ -163,7 +163,7 @@ class Table {
 
   f32::RayAnswer trace(const View& view, int x, int y, int opening) const {
     return f32::trace_ray(probes_.grid(), dials_, default_rules(), view.origin_m, glm::vec3(0.0f), view.direction(x, y),
-                          kStartLevel, opening);
+                          kStartLevel, {opening, 0.0f});
   }
 
   void row(const char* name, const Opening& opening) {

@@ -51,12 +51,14 @@ inline ProbeRadiance pattern_radiance(const RayScene& rays, glm::dvec3 position_
 }
 
 struct ProbeRoom {
-  Scene scene = furnished_room();
+  Scene scene;
   ProbeGrid grid;
   std::vector<DeviceProbe> probes;
 
   // `samples` of the probes by turns, from the first on.
-  explicit ProbeRoom(int n = 64, int r = 32, std::initializer_list<DeviceSamples> samples = {DeviceSamples::kFloat}) {
+  explicit ProbeRoom(int n = 64, int r = 32, std::initializer_list<DeviceSamples> samples = {DeviceSamples::kFloat},
+                     Scene of = furnished_room())
+      : scene(std::move(of)) {
     const RayScene rays(scene);
     grid.origin_m = {-1.6, 0.9, -1.1};
     grid.spacing_m = {3.1, 1.1, 2.4};

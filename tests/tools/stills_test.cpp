@@ -94,5 +94,31 @@ TEST(Stills, DepthIsTheDistanceAlongTheViewsAxis) {
   EXPECT_GT(distance_m[row + 20], 2.6f);
 }
 
+// The left eye is the same to the bit, the right one where it can be told from the left one's picture to rounding.
+TEST(Stills, TheSecondEyeFromTheFirstShowsWhatItTraces) {
+  const fs::path dir = fresh_folder("stills-second-eye");
+  const std::vector<std::string> eyes{"--pose", "0.5,1.5,0.3,-90,0", "--stereo", "--aov", "distance,lookups"};
+  std::vector<std::string> traced = eyes;
+  traced.insert(traced.end(), {"--second-eye", "traced"});
+  ASSERT_EQ(render(dir / "from-first.exr", eyes).exit_code, 0);
+  ASSERT_EQ(render(dir / "traced.exr", traced).exit_code, 0);
+  std::size_t shared = 0, differ = 0;
+  const auto read = [&](const char* file, const char* name) { return channel_of(dir / file, name, 2 * kWidth); };
+  const auto distance = read("from-first.exr", "distance"), plain = read("traced.exr", "distance");
+  const auto lookups = read("from-first.exr", "lookups"), plain_lookups = read("traced.exr", "lookups");
+  for (std::size_t k = 0; k < distance.size(); ++k) {
+    if (k % (2 * kWidth) < kWidth) {
+      ASSERT_EQ(distance[k], plain[k]);
+      ASSERT_EQ(lookups[k], plain_lookups[k]);
+      continue;
+    }
+    shared += lookups[k] != plain_lookups[k];
+    differ += std::abs(distance[k] - plain[k]) > 1e-3f * plain[k];
+  }
+  EXPECT_GT(shared, std::size_t{kWidth * kHeight} / 3);
+  EXPECT_LT(differ, std::size_t{kWidth * kHeight} / 40) << "holes, of which the distance is a guess, included";
+  EXPECT_NE(render(dir / "no.exr", {"--stereo", "--second-eye", "guessed"}).exit_code, 0);
+}
+
 }  // namespace
 }  // namespace probewalk::test

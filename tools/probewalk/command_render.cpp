@@ -21,6 +21,7 @@
 #include "tools/probewalk/method_options.h"
 #include "tools/probewalk/named_poses.h"
 #include "tools/probewalk/reference_picture.h"
+#include "tools/probewalk/second_eye_option.h"
 #include "tools/probewalk/still.h"
 #include "xr/eyes.h"
 
@@ -44,6 +45,7 @@ struct RenderArguments {
   std::vector<std::string> aov;
   std::uint32_t samples = 1;
   std::string foveation = "off";
+  std::string second_eye = kSecondEyeFromFirst;
   double ev = 0.0;
   CLI::Option* ev_option = nullptr;
   bool reference = false;
@@ -150,7 +152,7 @@ class RenderJob {
         device_({}, {.device = common.device}),
         drawer_(pack_, device_, extent_, arguments.stereo ? 2 : 1, arguments.samples, *progress_, choice_,
                 chosen_maps(choice_, arguments.method, pack_, arguments.own_scale(), common.threads, *progress_).get(),
-                foveation_of(arguments.foveation)) {
+                foveation_of(arguments.foveation), arguments.second_eye == kSecondEyeFromFirst) {
     if (arguments.reference) {
       reference_ = std::make_unique<ReferenceCaster>(arguments.method.scene, pack_.manifest(), arguments.own_scale(),
                                                      common.threads, *progress_);
@@ -301,6 +303,7 @@ void RenderJob::count(const Still& still, nlohmann::json& report) const {
   report["unknown_fraction"] = share(unknown);
   report["samples"] = arguments_.samples;
   report["foveation"] = arguments_.foveation;
+  if (arguments_.stereo) report["second_eye"] = arguments_.second_eye;
   report["rays_mean"] = static_cast<double>(rays) / static_cast<double>(lookups.size());
   report["lookups_mean"] = sum / static_cast<double>(lookups.size());
   report["lookups_p99"] = *p99;
@@ -396,6 +399,7 @@ void add_render_command(CLI::App& app, CommonOptions& common) {
   command->add_option("--samples", arguments->samples, "Rays of a pixel at an edge: 1, 2 or 4")
       ->check(CLI::IsMember({1, 2, 4}))->capture_default_str();
   add_foveation_option(*command, arguments->foveation);
+  add_second_eye_option(*command, arguments->second_eye);
   arguments->ev_option = command->add_option("--ev", arguments->ev, "Exposure value at ISO 100 (default: the pack's)")
       ->check(CLI::Range(-30.0, 30.0));
   command->add_flag("--reference", arguments->reference, "Cast the picture at the triangles, and compare");

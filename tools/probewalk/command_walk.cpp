@@ -14,6 +14,7 @@
 #include "tools/probewalk/commands.h"
 #include "tools/probewalk/foveation_option.h"
 #include "tools/probewalk/method_options.h"
+#include "tools/probewalk/second_eye_option.h"
 #include "tools/probewalk/walking_options.h"
 #include "xr/eye_scale.h"
 #include "xr/latency/run_files.h"
@@ -32,6 +33,7 @@ struct WalkArguments {
   MethodOptions method;
   std::shared_ptr<WalkingOptions> walking = std::make_shared<WalkingOptions>();
   std::string eye_size, eye_scale;
+  std::string second_eye = kSecondEyeFromFirst;
   std::string path, record, report, pictures, cache;
   std::uint64_t frames = 0;
   double seconds = 0.0;
@@ -117,6 +119,7 @@ void run_walk(WalkArguments arguments, const CommonOptions& common) {
     walk_options.eye_scale_adapts = arguments.eye_scale == "auto";
     if (!*walk_options.eye_scale_adapts) walk_options.eye_scale = parse_eye_scale(arguments.eye_scale);
   }
+  walk_options.second_from_first = arguments.second_eye == kSecondEyeFromFirst;
   if (arguments.budget_mib > 0) walk_options.budget_bytes = arguments.budget_mib << 20;
   if (arguments.settle || arguments.realtime) walk_options.settle = arguments.settle;
   if (arguments.ev_option->count() > 0) walk_options.exposure_ev = arguments.ev;
@@ -260,6 +263,7 @@ void add_walk_command(CLI::App& app, CommonOptions& common) {
       ->check(CLI::IsMember({1, 2, 4}))
       ->capture_default_str();
   add_foveation_option(*command, walk_options.foveation);
+  add_second_eye_option(*command, arguments->second_eye);
   command->add_option("--device-budget", arguments->budget_mib, "Device memory for probes, MiB (default: what the device has free)")
       ->check(CLI::Range(1ull, 1ull << 24));
   command->add_option("--cache", arguments->cache,

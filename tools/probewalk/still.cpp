@@ -35,7 +35,7 @@ std::vector<float> along_axis(const std::vector<float>& distance_m, const ViewCo
 struct StillDrawer::Impl {
   Impl(const Pack& pack_in, const Device& device_in, VkExtent2D extent_px, std::uint32_t view_count,
        std::uint32_t samples, Progress& progress_in, const TracerChoice& choice, const BaselineMaps* maps,
-       const std::optional<Foveation>& foveation)
+       const std::optional<Foveation>& foveation, bool second_from_first)
       : pack(pack_in),
         device(device_in),
         progress(progress_in),
@@ -47,7 +47,15 @@ struct StillDrawer::Impl {
                                                          : nullptr),
         picture(device,
                 {kFormat, extent, views, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT}),
-        renderer(device, store, {{extent, views, true, samples, foveation, false, {choice, baselines.get()}}, kFormat}),
+        renderer(device, store,
+                 {{.extent_px = extent,
+                   .views = views,
+                   .aov = true,
+                   .samples = samples,
+                   .foveation = foveation,
+                   .setup = {choice, baselines.get()},
+                   .second_from_first = second_from_first},
+                  kFormat}),
         source(pack.path()),
         streamer(
             pack.manifest(), source,
@@ -78,8 +86,9 @@ struct StillDrawer::Impl {
 
 StillDrawer::StillDrawer(const Pack& pack, const Device& device, VkExtent2D extent_px, std::uint32_t view_count,
                          std::uint32_t samples, Progress& progress, const TracerChoice& choice,
-                         const BaselineMaps* maps, const std::optional<Foveation>& foveation)
-    : impl_(std::make_unique<Impl>(pack, device, extent_px, view_count, samples, progress, choice, maps, foveation)) {}
+                         const BaselineMaps* maps, const std::optional<Foveation>& foveation, bool second_from_first)
+    : impl_(std::make_unique<Impl>(pack, device, extent_px, view_count, samples, progress, choice, maps, foveation,
+                                   second_from_first)) {}
 
 StillDrawer::~StillDrawer() = default;
 

@@ -27,11 +27,12 @@ struct Still {
 // Keeps the pack's rooms on the device from one picture to the next.
 class StillDrawer {
  public:
-  // All must outlive the drawer. view_count eyes a picture; `samples` and `foveation` as in TracerOptions. `maps`: of a
+  // All must outlive the drawer. view_count eyes a picture; `samples`, `foveation` and `second_from_first` as in TracerOptions. `maps`: of a
   // choice that needs some; copied to the device at once.
   StillDrawer(const Pack& pack, const Device& device, VkExtent2D extent_px, std::uint32_t view_count,
               std::uint32_t samples, Progress& progress, const TracerChoice& choice = {},
-              const BaselineMaps* maps = nullptr, const std::optional<Foveation>& foveation = std::nullopt);
+              const BaselineMaps* maps = nullptr, const std::optional<Foveation>& foveation = std::nullopt,
+              bool second_from_first = false);
   ~StillDrawer();
   StillDrawer(const StillDrawer&) = delete;
   StillDrawer& operator=(const StillDrawer&) = delete;

@@ -160,6 +160,7 @@ const std::vector<Term>& terms() {
       {"method", [](const Run& r) { return r.info.method; }, true},
       {"rays a pixel at edges", [](const Run& r) { return fmt::format("{}", r.info.samples); }, true},
       {"foveation", [](const Run& r) { return r.info.foveation; }, true},
+      {"second eye", [](const Run& r) { return r.info.second_eye; }, true},
       {"views and eye size",
        [](const Run& r) { return fmt::format("{} of {} × {} px", r.info.views, r.info.eye_width, r.info.eye_height); },
        true},

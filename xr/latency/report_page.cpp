@@ -215,7 +215,8 @@ const std::vector<Fact>& facts() {
       {"method",
        [](const Run& r, const Summary&) {
          return r.info.method + (r.info.samples > 1 ? fmt::format(", {} rays a pixel at edges", r.info.samples) : "") +
-                (r.info.foveation != "off" ? ", foveation " + r.info.foveation : "");
+                (r.info.foveation != "off" ? ", foveation " + r.info.foveation : "") +
+                (r.info.second_eye != "traced" ? ", second eye " + r.info.second_eye : "");
        }},
       {"device",
        [](const Run& r, const Summary&) {

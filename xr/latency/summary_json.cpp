@@ -189,6 +189,7 @@ std::string summary_json(const Ledger& ledger, const RunInfo& info) {
                {"method", info.method},
                {"samples", info.samples},
                {"foveation", info.foveation},
+               {"second_eye", info.second_eye},
                {"eye_scale", {{"min", or_null(summary.eye_scale_min)}, {"mean", or_null(summary.eye_scale_mean)}}},
                {"period_ns", summary.period_ns},
                {"frames", summary.frames},
@@ -236,6 +237,7 @@ SummaryHead parse_summary_json(std::string_view text, const std::string& file) {
   take(json, "method", info.method, file);
   if (json.contains("samples")) take(json, "samples", info.samples, file);
   if (json.contains("foveation")) take(json, "foveation", info.foveation, file);
+  if (json.contains("second_eye")) take(json, "second_eye", info.second_eye, file);
   take(json, "warmup_frames", head.options.warmup_frames, file);
   take(json, "has_deadlines", head.options.has_deadlines, file);
   if (const auto cost = json.find("instrumentation_cost_fraction"); cost != json.end() && !cost->is_null()) {

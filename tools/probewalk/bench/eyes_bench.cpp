@@ -41,11 +41,11 @@ std::vector<Head> heads_of(const std::vector<NamedPose>& poses, const BenchOptio
 class EyesTracer {
  public:
   EyesTracer(const Device& device, const PackLevel& level, const TraceConstants& dials, VkExtent2D extent,
-             std::uint32_t eyes, bool shared_openings)
+             const TracerOptions& options)
       : device_(device),
         level_(level),
         dials_(dials),
-        tracer_(device, options_of(extent, eyes, shared_openings)),
+        tracer_(device, with_counts(options, extent)),
         constants_(device, sizeof(FrameConstants), BufferMemory::kShared),
         clock_(device),
         timer_(device, 1) {}
@@ -89,12 +89,9 @@ class EyesTracer {
   }
 
  private:
-  static TracerOptions options_of(VkExtent2D extent, std::uint32_t eyes, bool shared_openings) {
-    TracerOptions options;
+  static TracerOptions with_counts(TracerOptions options, VkExtent2D extent) {
     options.extent_px = extent;
-    options.views = eyes;
     options.aov = true;
-    options.shared_openings = shared_openings;
     return options;
   }
 
@@ -144,6 +141,13 @@ struct Contestant {
 std::vector<EyesRow> bench_eyes(const Device& device, const BenchOptions& options, const PackLevel& level,
                                 const TraceConstants& dials, const std::vector<NamedPose>& poses,
                                 const GroundTruth* truth, const std::string& scene, Progress& progress) {
+  struct Way {
+    const char* settings;
+    TracerOptions options;
+  };
+  const Way ways[] = {{kDefaultSettings, {}},
+                      {"first probes found once a view", {.shared_openings = true}},
+                      {"second eye from the first", {.second_from_first = true}}};
   const VkExtent2D extent{static_cast<std::uint32_t>(options.width_px), static_cast<std::uint32_t>(options.height_px)};
   const RaySize size{options.width_px, options.height_px, glm::radians(options.fov_deg)};
   const std::vector<Head> heads = heads_of(poses, options, extent);
@@ -151,11 +155,13 @@ std::vector<EyesRow> bench_eyes(const Device& device, const BenchOptions& option
   for (std::size_t eye = 0; truth != nullptr && eye < 2; ++eye) truth_m[eye] = truth_of_eye(*truth, heads, eye, size);
 
   std::vector<Contestant> contestants;
-  for (const bool shared : {false, true}) {
+  for (const Way& way : ways) {
     Contestant c;
-    c.settings = shared ? "first probes found once a view" : kDefaultSettings;
+    c.settings = way.settings;
     for (auto [eyes, tracer] : {std::pair(1u, &c.one), std::pair(2u, &c.both)}) {
-      *tracer = std::make_unique<EyesTracer>(device, level, dials, extent, eyes, shared);
+      TracerOptions tracing = way.options;
+      tracing.views = eyes;
+      *tracer = std::make_unique<EyesTracer>(device, level, dials, extent, tracing);
     }
     contestants.push_back(std::move(c));
   }

@@ -1,0 +1,59 @@
+// What the first of two eyes has seen at a pixel, kept for the second one (shaders/first_eye.glsl).
+#ifndef PROBEWALK_SHADERS_SHARED_SEEN_SURFACE_H
+#define PROBEWALK_SHADERS_SHARED_SEEN_SURFACE_H
+
+#include "dialect.h"
+
+// Kept a pair of eyes: a SeenSurface a pixel of the first one's picture, row-major; and a word a tile, row-major: from which
+// column on the second eye's tile looks through its rows of that picture (its width: all of them have to be traced), then,
+// as float bits, the depth in metres at which the margin's tile was seen.
+
+PW_SHARED_BEGIN
+
+struct SeenSurface {
+  pw_vec3 plane;   // RayAnswer::plane of a hit, relative to its probe
+  pw_uint answer;  // the probe and the flags below; kSeenNothing: nobody can go by this pixel
+  float depth_m;   // along the eye's axis: as far as the ray was free
+};
+
+PW_CONSTANT pw_uint kSeenMiss = 0x80000000u;
+PW_CONSTANT pw_uint kSeenUnknown = 0x40000000u;
+PW_CONSTANT pw_uint kSeenEnvironment = 0x20000000u;  // RayAnswer::environment
+PW_CONSTANT pw_uint kSeenFlags = 0xe0000000u;
+PW_CONSTANT pw_uint kSeenNothing = 0xffffffffu;
+
+// A ray that the first eye could not answer: left by ask_first_eye.comp, traced by trace_rest.comp.
+struct RestRay {
+  pw_uint pixel;   // x, y, view, kRestSideBits of each side
+  float t_free_m;  // nothing is met before
+};
+
+// The list's head; an indirect dispatch of trace_rest.comp reads its first three words. The rays follow.
+struct RestHead {
+  pw_uint groups_x, groups_y, groups_z;
+  pw_uint count;
+};
+
+PW_CONSTANT int kRestSideBits = 13;
+// Rays of a group of trace_rest.comp, and groups at most: they take further rays in turn.
+PW_CONSTANT int kRestGroup = 64;
+PW_CONSTANT int kMaxRestGroups = 32768;
+
+// A picture is looked through in tiles of this many pixels a side.
+PW_CONSTANT int kSeenTile = 8;
+// Tiles' columns that the first eye looks at beyond its picture's right edge, a ray each, for the columns of the picture:
+// what is close to the second eye may lie there.
+PW_FUNCTION int seen_margin(int columns) { return (3 * columns + 7) / 8; }
+// Widest picture, in tiles' columns with the margin: one group looks through a row of them.
+PW_CONSTANT int kSeenMostColumns = 1024;
+PW_CONSTANT int kSeenGroup = 64;
+
+PW_SHARED_END
+
+#ifdef __cplusplus
+namespace probewalk {
+static_assert(sizeof(SeenSurface) == 20 && sizeof(RestRay) == 8 && sizeof(RestHead) == 16);
+}
+#endif
+
+#endif

@@ -1,0 +1,15 @@
+// --second-eye, of the sub-commands that draw two eyes.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+
+namespace probewalk {
+
+inline constexpr const char* kSecondEyeFromFirst = "from-first";
+inline constexpr const char* kSecondEyeTraced = "traced";
+
+// `name`: one of the above; the default is what it holds.
+void add_second_eye_option(CLI::App& command, std::string& name);
+
+}  // namespace probewalk
