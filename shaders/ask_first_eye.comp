@@ -64,9 +64,11 @@ bool answer_of_first_eye(FrameConstants constants, int view_index, ivec2 pixel, 
   if (!(x_far >= 0.0 && x_far < float(last) && pixels_m < kUnseen_m * (edge - x_far))) return false;
 
   int row = seen_row(pair, pixel.y / kSeenTile, size_px);
-  int at = int(SeenStarts(starts_address).v[row + pixel.x / kSeenTile]);
+  float near_m = uintBitsToFloat(SeenStarts(starts_address).v[row + pixel.x / kSeenTile]);
   answer.lookups += 1u;
-  if (at > last) return false;
+  int at = int(ceil(x_far + min(pixels_m / abs(near_m), float(size_px.x))));
+  if (at > last && near_m < 0.0) return false;
+  at = min(at, last);
   // From pixel to pixel, as long as the ray is in front of what both sides of the step have seen, or of the one plane that
   // both are of.
   SeenSurfaces surfaces = SeenSurfaces(surfaces_address);

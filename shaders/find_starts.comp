@@ -1,5 +1,5 @@
-// From where on a tile of the second eye's picture looks through its rows of the first one's (first_eye.glsl): no ray of
-// the tile meets anything that was seen further right. A group a row of tiles; z = pair of eyes.
+// How close what the rays of a tile of the second eye's picture might meet was seen by the first eye (first_eye.glsl): from
+// there on each looks through its row. A group a row of tiles; z = pair of eyes.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_buffer_reference : require
@@ -52,11 +52,13 @@ void main() {
   for (int column = int(gl_LocalInvocationID.x); column < columns; column += kSeenGroup) {
     // Of the tile's rays the last one's end lies furthest right.
     float x_far = far_column(first, second, float((column + 1) * kSeenTile - 1), size_px);
-    float start = x_far;
-    for (int k = max(int(floor(x_far)) / kSeenTile, 0); pixels_m > 0.0 && k < all; ++k) {
-      float reach = x_far + pixels_m / least_m[k];
-      if (reach >= float(k * kSeenTile)) start = max(start, min(reach, float((k + 1) * kSeenTile)));
+    float near_m = kSeenFar_m;
+    bool in_margin = false;
+    for (int k = max((int(floor(x_far)) - kSeenTile) / kSeenTile, 0); pixels_m > 0.0 && k < all; ++k) {
+      if (x_far + pixels_m / least_m[k] < float(k * kSeenTile)) continue;
+      near_m = min(near_m, least_m[k]);
+      in_margin = in_margin || k >= columns;
     }
-    starts.v[seen_row(pair, row, size_px) + column] = uint(clamp(int(ceil(start)), 0, size_px.x));
+    starts.v[seen_row(pair, row, size_px) + column] = floatBitsToUint(in_margin ? -near_m : near_m);
   }
 }

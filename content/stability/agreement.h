@@ -22,14 +22,16 @@ double distance_error(const Answer& answer, const Answer& reference, double scal
 // Same class, and the same distance but for conditioning.
 bool same_answer(const Answer& answer, const Answer& reference, double scale_m);
 
-// The reference's answer for the ray x + t d.
-using Reference = std::function<Answer(glm::dvec3 x, glm::dvec3 d)>;
+// The reference's answer for the ray x + t d, t >= t_start.
+using Reference = std::function<Answer(glm::dvec3 x, glm::dvec3 d, double t_start)>;
 
 // A difference is a tie where the reference gives the contender's answer for a ray within `tie` of this one: there the
 // answer jumps (an edge shared by two surfaces, a wall's rim), and rounding alone tells the sides of the jump apart; or
 // where it runs through the contender's distance (a ray that all but lies in a surface), so that rounding alone says
-// where along it the two meet.
-bool is_tie(const Reference& reference, glm::dvec3 x, glm::dvec3 d, const Answer& answer, double scale_m,
-            double tie = kTie);
+// where along it the two meet; or where the reference gives it right behind the place where its own way ended: what
+// ended it there is a corner of surface that the ray crosses over a shorter way than rounding knows. Behind a surface
+// proper nothing gives an answer.
+bool is_tie(const Reference& reference, glm::dvec3 x, glm::dvec3 d, double t_start, const Answer& answer,
+            double scale_m, double tie = kTie);
 
 }  // namespace probewalk::stability

@@ -53,8 +53,8 @@ class Judge {
     }
 
     const Answer twice = walk_in_double(record, x, d, t_start, 0);
-    const Reference double_walk = [&](glm::dvec3 at, glm::dvec3 towards) {
-      return walk_in_double(record, at, towards, t_start, 0);
+    const Reference double_walk = [&](glm::dvec3 at, glm::dvec3 towards, double from) {
+      return walk_in_double(record, at, towards, from, 0);
     };
     const bool as_single = device && device->same_bits(single);
     // What the device answers as C++ float does is not asked twice.
@@ -63,8 +63,8 @@ class Judge {
       return [&] {
         if (hard_.hostile) return false;
         if (&answer != &single && !(as_single && &answer == device))
-          return is_tie(reference, x, d, answer, place_.scale_m, tie_);
-        if (!single_ties) single_ties = is_tie(reference, x, d, single, place_.scale_m, tie_);
+          return is_tie(reference, x, d, t_start, answer, place_.scale_m, tie_);
+        if (!single_ties) single_ties = is_tie(reference, x, d, t_start, single, place_.scale_m, tie_);
         return *single_ties;
       };
     };
@@ -78,10 +78,10 @@ class Judge {
       tally.device_float.add(ray, index, *device, single, place_.scale_m, against(double_walk, *device));
     }
     if (!brute || hard_.hostile) return;
-    const Reference by_force = [&](glm::dvec3 at, glm::dvec3 towards) {
-      return from_brute_force(place_.brute.trace(at, towards, t_start));
+    const Reference by_force = [&](glm::dvec3 at, glm::dvec3 towards, double from) {
+      return from_brute_force(place_.brute.trace(at, towards, from));
     };
-    const Answer truth = by_force(x, d);
+    const Answer truth = by_force(x, d, t_start);
     single_ties.reset();
     tally.float_brute.add(ray, index, single, truth, place_.scale_m, against(by_force, single));
     if (device) tally.device_brute.add(ray, index, *device, truth, place_.scale_m, against(by_force, *device));

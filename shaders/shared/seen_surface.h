@@ -4,9 +4,9 @@
 
 #include "dialect.h"
 
-// Kept a pair of eyes: a SeenSurface a pixel of the first one's picture, row-major; and a word a tile, row-major: from which
-// column on the second eye's tile looks through its rows of that picture (its width: all of them have to be traced), then,
-// as float bits, the depth in metres at which the margin's tile was seen.
+// Kept a pair of eyes: a SeenSurface a pixel of the first one's picture, row-major; and float bits a tile, row-major:
+// the least depth in metres at which there might be what the rays of the second eye's tile meet, negative where that might
+// be beyond the picture's edge; and behind each row the depths at which its margin's tiles were seen.
 
 PW_SHARED_BEGIN
 

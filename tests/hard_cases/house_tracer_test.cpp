@@ -123,13 +123,13 @@ TEST(HouseTracer, AllCompilationsAndBruteForceAgree) {
     const f32::WalkState a = f32::walk_probe(record, x, d, 0.0f, kStartLevel);
     singles[k] = {a.status, a.t, a.t_safe, glm::dvec3(a.plane), a.lookups};
     twices[k] = stability::walk_in_double(record, glm::dvec3(x), glm::dvec3(d), 0.0, kStartLevel);
-    const stability::Reference by_force = [&](glm::dvec3 at, glm::dvec3 towards) {
-      return stability::from_brute_force(brutes[static_cast<std::size_t>(p)]->trace(at, towards));
+    const stability::Reference by_force = [&](glm::dvec3 at, glm::dvec3 towards, double from) {
+      return stability::from_brute_force(brutes[static_cast<std::size_t>(p)]->trace(at, towards, from));
     };
-    truths[k] = by_force(glm::dvec3(x), glm::dvec3(d));
+    truths[k] = by_force(glm::dvec3(x), glm::dvec3(d), 0.0);
     const auto is_tie = [&](const Answer& answer) {
       return !stability::same_answer(answer, truths[k], 1.0) &&
-             stability::is_tie(by_force, glm::dvec3(x), glm::dvec3(d), answer, 1.0);
+             stability::is_tie(by_force, glm::dvec3(x), glm::dvec3(d), 0.0, answer, 1.0);
     };
     tie32[k] = is_tie(singles[k]);
     tie64[k] = is_tie(twices[k]);

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "content/error.h"
+#include "content/stability/agreement.h"
 #include "content/stability/cases.h"
 #include "content/stability/low_discrepancy.h"
 #include "content/stability/results.h"
@@ -242,6 +243,35 @@ TEST(HardCases, EveryRayFindsItsCase) {
   EXPECT_NEAR(static_cast<double>(asked), 2e7, 1e4);
   EXPECT_GE(brute, 1'000'000u);
   EXPECT_GE(brute_fine, 100'000u);
+}
+
+// A reference whose way ends at t = 1, on something so long along the ray.
+Reference ends_over(double length) {
+  return [length](glm::dvec3, glm::dvec3, double t_start) {
+    Answer answer;
+    if (t_start <= 1.0) {
+      answer.t = answer.t_safe = 1.0;
+    } else if (t_start < 1.0 + length) {
+      answer.cls = kClassBehind;
+      answer.t = answer.t_safe = t_start;
+    } else {
+      answer.cls = kClassHit;
+      answer.t = answer.t_safe = 2.0;
+    }
+    return answer;
+  };
+}
+
+TEST(Tie, IsACornerThatIsCrossedOverLessThanRoundingKnows) {
+  Answer beyond, elsewhere;
+  beyond.cls = elsewhere.cls = kClassHit;
+  beyond.t = 2.0;
+  elsewhere.t = 3.0;
+  const glm::dvec3 x(0.1, 0.2, 0.3), d(0.0, 0.0, 1.0);
+  EXPECT_TRUE(is_tie(ends_over(1e-7), x, d, 0.0, beyond, 1.0));
+  EXPECT_FALSE(is_tie(ends_over(1e-7), x, d, 0.0, elsewhere, 1.0)) << "nor does the reference say that";
+  EXPECT_FALSE(is_tie(ends_over(1e-4), x, d, 0.0, beyond, 1.0)) << "more than a corner";
+  EXPECT_FALSE(is_tie(ends_over(10.0), x, d, 0.0, beyond, 1.0)) << "a wall";
 }
 
 }  // namespace

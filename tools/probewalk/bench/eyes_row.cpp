@@ -77,10 +77,10 @@ std::string eyes_table(const std::vector<EyesRow>& rows) {
   }
   return html +
          "</table></div>\n<p class=\"soft\">A head looks from each view with two eyes 63 mm apart, by the tracer that "
-         "draws "
-         "frames. First eye: the left one alone. Second eye: what both together take more. Both eyes' time and "
-         "identical "
-         "(class, probe and distance, bit for bit) are to the table's first row.</p>\n";
+         "draws frames. By default the second eye goes by what the first has seen; its probes are those that were still "
+         "walked through, its look-ups those in the first eye's picture, too. First eye: the left one alone. Second eye: "
+         "what both together take more. Both eyes' time and identical (class, probe and distance, bit for bit) are to the "
+         "table's first row.</p>\n";
 }
 
 }  // namespace probewalk::bench
