@@ -12,6 +12,9 @@
 
 // Metres from the eye within which nothing is expected that the other one's picture has not got.
 const float kUnseen_m = 0.1;
+// By how much the eyes' axes and the tangents of their pictures' upper and lower edges may differ, as runtimes round them:
+// some hundredths of a headset's pixel.
+const float kAlike = 1e-5;
 // Depth of the sky.
 const float kSeenFar_m = 1e30;
 // Two pixels have seen one plane where both put the hit at the same distance, relatively.
@@ -38,8 +41,10 @@ float eye_pixels_m(ViewConstants first, ViewConstants second, ivec2 size_px) {
   vec3 apart = (second.origin_hi_m - first.origin_hi_m) + (second.origin_lo_m - first.origin_lo_m);
   float across = dot(apart, first.world_from_eye_x.xyz);
   float up = dot(apart, first.world_from_eye_y.xyz), back = dot(apart, first.world_from_eye_z.xyz);
-  bool alike = first.world_from_eye_x.xyz == second.world_from_eye_x.xyz &&
-               first.world_from_eye_y.xyz == second.world_from_eye_y.xyz && first.tan_angles.zw == second.tan_angles.zw;
+  vec3 off_x = abs(first.world_from_eye_x.xyz - second.world_from_eye_x.xyz);
+  vec3 off_y = abs(first.world_from_eye_y.xyz - second.world_from_eye_y.xyz);
+  vec3 off = max(max(off_x, off_y), vec3(abs(first.tan_angles.zw - second.tan_angles.zw), 0.0));
+  bool alike = max(max(off.x, off.y), off.z) <= kAlike;
   bool level = abs(up) + abs(back) <= 1e-4 * abs(across);
   return alike && level ? across * float(size_px.x) / (first.tan_angles.y - first.tan_angles.x) : -1.0;
 }

@@ -165,6 +165,17 @@ TEST_F(SecondEyeTest, EyesThatAreNotSideBySideTraceEachByItself) {
   }
 }
 
+// Runtimes tell each eye's pose with rounding of its own.
+TEST_F(SecondEyeTest, EyesThatDifferByRoundingAreSideBySide) {
+  auto views = eyes({0.3, 1.5, 0.9}, 0.4);
+  views[1] = eyes({0.3, 1.5 + 1e-6, 0.9}, 0.4 + 2e-6, 1e-6)[1];
+  ASSERT_NE(views[0].world_from_eye_x, views[1].world_from_eye_x);
+  const Drawn drawn = draw(views, true), plain = draw(views, false);
+  const Against second = compare(drawn, plain, 1);
+  EXPECT_GT(second.not_walked, second.pixels / 2);
+  EXPECT_LT(second.farther_off, second.pixels / 100);
+}
+
 TEST_F(SecondEyeTest, OddViewsFoveationAndBaselinesAreTracedAsEver) {
   const auto views = eyes({0.3, 1.5, 0.9}, 0.4);
   TracerOptions odd{.extent_px = kExtent, .views = 1, .second_from_first = true};
