@@ -158,7 +158,7 @@ TEST(OpenXrTiming, ABareSimulatedHeadsetErrsByNothing) {
 TEST(OpenXrTiming, EveryShownFrameIsAccountedForWhereAnswersFail) {
   if (!has_monado()) GTEST_SKIP() << "monado-service is not installed";
   const LayerWalk run = walk_behind_layer(
-      "answers", "answer_invalid_every=4;stall=xrWaitFrame;stall_ms=160;stall_every=5", "--frames 40");
+      "answers", "answer_invalid_every=4;stall=xrWaitFrame;stall_ms=160;stall_every=5", "--frames 80");
   const auto& frames = run.walk.frames;
   const auto shown = static_cast<std::size_t>(std::ranges::count_if(run.ended, [](auto& f) { return f.layers > 0; }));
   EXPECT_GT(count(frames, PoseAnswer::kMeasured), 5u);
