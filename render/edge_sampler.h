@@ -37,7 +37,7 @@ class EdgeSampler {
  private:
   const StorageImageSet& images_;
   EdgeSamplerOptions options_;
-  Buffer list_;  // EdgeListHead, then a word for every pixel that may be an edge's
+  Buffer list_;  // PixelListHead, then a word for every pixel that may be an edge's
   Pipeline find_, sample_;
 };
 

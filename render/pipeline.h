@@ -39,10 +39,10 @@ struct PushConstants {
   VkDeviceAddress constants = 0;  // where the rest lies
   std::uint32_t view = 0;         // that a draw is for
   std::uint32_t first = 0;        // of what a dispatch makes, where it makes a part
-  VkDeviceAddress list = 0;  // what a pass has beside: edge pixels (shaders/shared/edge_list.h), guides (guides.h)
+  VkDeviceAddress list = 0;  // what a pass has beside: pixels (shaders/shared/pixel_list.h), guides (guides.h)
   VkDeviceAddress openings = 0;  // what first probes are chosen from (shaders/openings.glsl)
-  VkDeviceAddress surfaces = 0;  // what the first of two eyes has seen, and from where on the second one looks through it
-  VkDeviceAddress starts = 0;    // (shaders/first_eye.glsl)
+  VkDeviceAddress surfaces = 0;  // what the first of two eyes has seen (shaders/first_eye.glsl), and how close what the
+  VkDeviceAddress depths = 0;    // second one's tiles might meet is
 };
 
 // Owns a pipeline and its layout.

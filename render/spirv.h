@@ -7,7 +7,7 @@
 namespace probewalk::spirv {
 
 extern const std::span<const std::uint32_t> k_ask_first_eye_comp;
-extern const std::span<const std::uint32_t> k_find_starts_comp;
+extern const std::span<const std::uint32_t> k_find_near_depths_comp;
 extern const std::span<const std::uint32_t> k_trace_rest_comp;
 extern const std::span<const std::uint32_t> k_trace_stereo_comp;
 extern const std::span<const std::uint32_t> k_trace_stereo_baseline_comp;

@@ -28,8 +28,8 @@ Image make_output(const Device& device, const TracerOptions& options, VkFormat f
 TracerOptions checked(TracerOptions options) {
   check_setup(options.setup);
   options.second_from_first = options.second_from_first &&
-                              SecondEye::suits(options.views, options.foveation.has_value(), options.setup.choice) &&
-                              SecondEye::fits(options.extent_px);
+                              SecondEye::suits(options.extent_px, options.views, options.foveation.has_value(),
+                                               options.setup.choice);
   return options;
 }
 

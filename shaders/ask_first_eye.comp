@@ -24,7 +24,7 @@ layout(binding = 2, rgba32ui) writeonly uniform uimage2DArray aov_image;
 
 layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer Frame { FrameConstants constants; };
 layout(buffer_reference, scalar, buffer_reference_align = 16) buffer RestList {
-  RestHead head;
+  PixelListHead head;
   RestRay ray[];
 };
 layout(push_constant) uniform Push {
@@ -33,13 +33,12 @@ layout(push_constant) uniform Push {
   uvec2 list_address;
   uvec2 openings_address;
   uvec2 surfaces_address;
-  uvec2 starts_address;
+  uvec2 depths_address;
 };
 
 #include "first_eye.glsl"
 #include "hidden_tiles.glsl"
-
-const float kHiddenDistance_m = 1e30;  // as of a miss
+#include "store_ray.glsl"
 
 shared uint tile_count, tile_start;
 
@@ -64,7 +63,7 @@ bool answer_of_first_eye(FrameConstants constants, int view_index, ivec2 pixel, 
   if (!(x_far >= 0.0 && x_far < float(last) && pixels_m < kUnseen_m * (edge - x_far))) return false;
 
   int row = seen_row(pair, pixel.y / kSeenTile, size_px);
-  float near_m = uintBitsToFloat(SeenStarts(starts_address).v[row + pixel.x / kSeenTile]);
+  float near_m = SeenDepths(depths_address).v[row + pixel.x / kSeenTile];
   answer.lookups += 1u;
   int at = int(ceil(x_far + min(pixels_m / abs(near_m), float(size_px.x))));
   if (at > last && near_m < 0.0) return false;
@@ -129,9 +128,7 @@ void main() {
   ivec3 texel = ivec3(pixel, view_index);
   bool inside = all(lessThan(pixel, size_px));
   if (kMasked && inside && is_hidden_tile(constants.hidden_tiles_address, view_index, pixel / 8, size_px)) {
-    imageStore(radiance_image, texel, vec4(0.0, 0.0, 0.0, 1.0));
-    imageStore(distance_image, texel, vec4(kHiddenDistance_m));
-    if (kWithAov) imageStore(aov_image, texel, uvec4(uint(kClassMiss), 0xffffffffu, 0u, 0u));
+    store_hidden(texel);
     inside = false;
   }
   if (gl_LocalInvocationIndex == 0u) tile_count = 0u;
@@ -153,12 +150,7 @@ void main() {
       uint reads;
       vec3 radiance = pipeline_radiance(constants.grid, constants.trace, answer, view.origin_hi_m, view.origin_lo_m,
                                         direction, view.pixel_angle_rad, reads);
-      imageStore(radiance_image, texel, vec4(min(radiance * constants.trace.radiance_scale, vec3(kPictureMax)), 1.0));
-      imageStore(distance_image, texel, vec4(answer.t));
-      if (kWithAov) {
-        imageStore(aov_image, texel,
-                   uvec4(uint(answer.cls), uint(answer.probe), answer.lookups, answer.tries | 1u << 8 | reads << 16));
-      }
+      store_ray(texel, answer, radiance, constants.trace.radiance_scale, reads);
     }
   }
   // One reservation a tile keeps the list's neighbours neighbours in the picture.
@@ -166,11 +158,9 @@ void main() {
   RestList list = RestList(list_address);
   if (gl_LocalInvocationIndex == 0u && tile_count > 0u) {
     tile_start = atomicAdd(list.head.count, tile_count);
-    uint groups = min((tile_start + tile_count + uint(kRestGroup - 1)) / uint(kRestGroup), uint(kMaxRestGroups));
-    atomicMax(list.head.groups_x, (groups + uint(kInterleave - 1)) / uint(kInterleave) * uint(kInterleave));
+    atomicMax(list.head.groups_x, list_groups(tile_start + tile_count, kInterleave));
   }
   barrier();
   if (!rest) return;
-  list.ray[tile_start + place] =
-      RestRay(uint(pixel.x) | uint(pixel.y) << kRestSideBits | uint(view_index) << (2 * kRestSideBits), t_free_m);
+  list.ray[tile_start + place] = RestRay(listed_pixel(texel), t_free_m);
 }

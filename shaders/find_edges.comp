@@ -6,7 +6,7 @@
 #extension GL_EXT_scalar_block_layout : require
 
 #include "shared/display_transform.h"
-#include "shared/edge_list.h"
+#include "shared/pixel_list.h"
 #include "shared/foveation.h"
 #include "shared/probe_layout.h"
 
@@ -24,7 +24,7 @@ layout(binding = 1, r32f) readonly uniform image2DArray distance_image;
 
 layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer Frame { FrameConstants constants; };
 layout(buffer_reference, scalar, buffer_reference_align = 16) buffer EdgeList {
-  EdgeListHead head;
+  PixelListHead head;
   uint pixel[];
 };
 layout(push_constant) uniform Push {
@@ -97,11 +97,10 @@ void main() {
   barrier();
   if (lane == 0 && tile_count > 0u) {
     tile_start = atomicAdd(list.head.count, tile_count);
-    uint groups = min((tile_start + tile_count + uint(kEdgeGroup - 1)) / uint(kEdgeGroup), uint(kMaxEdgeGroups));
-    atomicMax(list.head.groups_x, (groups + uint(kInterleave - 1)) / uint(kInterleave) * uint(kInterleave));
+    atomicMax(list.head.groups_x, list_groups(tile_start + tile_count, kInterleave));
   }
   barrier();
   if (!is_edge) return;
   list.pixel[tile_start + place] =
-      uint(pixel.x) | uint(pixel.y) << kEdgeSideBits | uint(view_index) << (2 * kEdgeSideBits);
+      listed_pixel(ivec3(pixel, view_index));
 }

@@ -15,7 +15,8 @@ const float kUnseen_m = 0.1;
 // By how much the eyes' axes and the tangents of their pictures' upper and lower edges may differ, as runtimes round them:
 // some hundredths of a headset's pixel.
 const float kAlike = 1e-5;
-// Depth of the sky.
+// Least depth kept, so that none is 0, and that of the sky.
+const float kSeenNear_m = 1e-4;
 const float kSeenFar_m = 1e30;
 // Two pixels have seen one plane where both put the hit at the same distance, relatively.
 const float kSamePlane = 1e-4;
@@ -25,11 +26,11 @@ const float kFreeFrom_px = 1.5;
 const float kBeside_px = 0.02;
 
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer SeenSurfaces { SeenSurface v[]; };
-layout(buffer_reference, scalar, buffer_reference_align = 4) buffer SeenStarts { uint v[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) buffer SeenDepths { float v[]; };
 
 int seen_columns(ivec2 size_px) { return (size_px.x + kSeenTile - 1) / kSeenTile; }
 
-// Of a row of tiles, the place of its first start; its margin's depths lie behind the starts.
+// Of a row of tiles, the place of its first depth; its margin's lie behind its tiles'.
 int seen_row(int pair, int row, ivec2 size_px) {
   int rows = (size_px.y + kSeenTile - 1) / kSeenTile, columns = seen_columns(size_px);
   return (pair * rows + row) * (columns + seen_margin(columns));

@@ -1,11 +1,11 @@
 // The body of sample_edges.comp and sample_edges_baseline.comp.
 #include "shared/display_transform.h"
-#include "shared/edge_list.h"
+#include "shared/pixel_list.h"
 #include "shared/tracer_glsl.h"
 #include "shared/view_ray.h"
 #include "openings.glsl"
 
-layout(local_size_x = kEdgeGroup) in;
+layout(local_size_x = kListGroup) in;
 
 // Also add to the counts.
 layout(constant_id = 0) const bool kWithAov = false;
@@ -19,7 +19,7 @@ layout(binding = 2, rgba32ui) uniform uimage2DArray aov_image;
 
 layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer Frame { FrameConstants constants; };
 layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer EdgeList {
-  EdgeListHead head;
+  PixelListHead head;
   uint pixel[];
 };
 layout(push_constant) uniform Push {
@@ -57,11 +57,10 @@ void main() {
   uint groups = gl_NumWorkGroups.x, part = groups / uint(kInterleave);
   uint group = gl_WorkGroupID.x % part * uint(kInterleave) + gl_WorkGroupID.x / part;
   float exposure = constants.exposure / constants.trace.radiance_scale;
-  uint stride = groups * uint(kEdgeGroup);
-  for (uint k = group * uint(kEdgeGroup) + gl_LocalInvocationIndex; k < list.head.count; k += stride) {
+  uint stride = groups * uint(kListGroup);
+  for (uint k = group * uint(kListGroup) + gl_LocalInvocationIndex; k < list.head.count; k += stride) {
     uint packed = list.pixel[k];
-    const uint mask = (1u << kEdgeSideBits) - 1u;
-    ivec3 texel = ivec3(packed & mask, (packed >> kEdgeSideBits) & mask, packed >> (2 * kEdgeSideBits));
+    ivec3 texel = texel_of(packed);
     vec2 centre_px = vec2(texel.xy) + 0.5;
     // What is shown is averaged, not radiance: light adds up on the display, after the tone curve. A bright sky beside
     // a dark frame would else outshine it with a hundredth of the pixel, and the edge would stay a staircase.

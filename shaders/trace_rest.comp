@@ -11,7 +11,7 @@
 #include "shared/view_ray.h"
 #include "openings.glsl"
 
-layout(local_size_x = kRestGroup) in;
+layout(local_size_x = kListGroup) in;
 
 // As in trace_stereo.glsl.
 layout(constant_id = 0) const bool kWithAov = false;
@@ -23,7 +23,7 @@ layout(binding = 2, rgba32ui) uniform uimage2DArray aov_image;
 
 layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer Frame { FrameConstants constants; };
 layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer RestList {
-  RestHead head;
+  PixelListHead head;
   RestRay ray[];
 };
 layout(push_constant) uniform Push {
@@ -33,16 +33,17 @@ layout(push_constant) uniform Push {
   uvec2 openings_address;
 };
 
+#include "store_ray.glsl"
+
 void main() {
   FrameConstants constants = Frame(frame_address).constants;
   RestList list = RestList(list_address);
   uint groups = gl_NumWorkGroups.x, part = groups / uint(kInterleave);
   uint group = gl_WorkGroupID.x % part * uint(kInterleave) + gl_WorkGroupID.x / part;
-  uint stride = groups * uint(kRestGroup);
-  for (uint k = group * uint(kRestGroup) + gl_LocalInvocationIndex; k < list.head.count; k += stride) {
+  uint stride = groups * uint(kListGroup);
+  for (uint k = group * uint(kListGroup) + gl_LocalInvocationIndex; k < list.head.count; k += stride) {
     RestRay ray = list.ray[k];
-    const uint mask = (1u << kRestSideBits) - 1u;
-    ivec3 texel = ivec3(ray.pixel & mask, (ray.pixel >> kRestSideBits) & mask, ray.pixel >> (2 * kRestSideBits));
+    ivec3 texel = texel_of(ray.pixel);
     ViewConstants view = constants.view[texel.z];
     vec3 direction = view_ray(view, texel.xy, constants.size_px);
     RayHint hint = opening_hint(openings_address, texel.z, direction);
@@ -52,12 +53,7 @@ void main() {
     uint reads;
     vec3 radiance = pipeline_radiance(constants.grid, constants.trace, answer, view.origin_hi_m, view.origin_lo_m,
                                       direction, view.pixel_angle_rad, reads);
-    imageStore(radiance_image, texel, vec4(min(radiance * constants.trace.radiance_scale, vec3(kPictureMax)), 1.0));
-    imageStore(distance_image, texel, vec4(answer.t));
-    if (kWithAov) {
-      uint asked = imageLoad(aov_image, texel).z;
-      imageStore(aov_image, texel, uvec4(uint(answer.cls), uint(answer.probe), answer.lookups + asked,
-                                         answer.tries | 1u << 8 | reads << 16));
-    }
+    if (kWithAov) answer.lookups += imageLoad(aov_image, texel).z;  // of what the first eye was asked
+    store_ray(texel, answer, radiance, constants.trace.radiance_scale, reads);
   }
 }

@@ -15,11 +15,11 @@ layout(constant_id = 1) const int kInterleave = 1;
 // Tiles may have one ray for several pixels (foveation.h); fill_blocks.comp fills in the others.
 layout(constant_id = 2) const bool kFoveated = false;
 
-// Only the first of each pair of views is traced, and what it sees kept for the second (first_eye.glsl).
-layout(constant_id = 18) const bool kFirstEyes = false;
-
 // Some tiles are hidden by the headset's optics: black, without rays.
 layout(constant_id = 3) const bool kMasked = false;
+
+// Only the first of each pair of views is traced, and what it sees kept for the second (first_eye.glsl).
+layout(constant_id = 18) const bool kFirstEyes = false;
 
 layout(binding = 0, rgba16f) writeonly uniform image2DArray radiance_image;
 layout(binding = 1, r32f) writeonly uniform image2DArray distance_image;
@@ -31,13 +31,12 @@ layout(push_constant) uniform Push {
   uvec2 unused[2];
   uvec2 openings_address;
   uvec2 surfaces_address;
-  uvec2 starts_address;
+  uvec2 depths_address;
 };
 
 #include "first_eye.glsl"
 #include "hidden_tiles.glsl"
-
-const float kHiddenDistance_m = 1e30;  // as of a miss
+#include "store_ray.glsl"
 
 void keep_surface(ivec3 texel, ivec2 size_px, RayAnswer answer, float cosine) {
   SeenSurface surface;
@@ -46,7 +45,7 @@ void keep_surface(ivec3 texel, ivec2 size_px, RayAnswer answer, float cosine) {
   if (answer.cls == kClassMiss) surface.answer |= kSeenMiss;
   if (answer.cls == kClassUnknown) surface.answer |= kSeenUnknown;
   if (answer.environment) surface.answer |= kSeenEnvironment;
-  surface.depth_m = answer.cls == kClassMiss ? kSeenFar_m : answer.t * cosine;
+  surface.depth_m = answer.cls == kClassMiss ? kSeenFar_m : max(answer.t * cosine, kSeenNear_m);
   SeenSurfaces(surfaces_address).v[seen_pixel(texel, size_px)] = surface;
 }
 
@@ -66,9 +65,9 @@ void look_beyond(FrameConstants constants, int view_index, ivec2 group) {
     RayAnswer answer = pipeline_trace(constants.baseline_address, constants.grid, constants.trace, view.origin_hi_m,
                                       view.origin_lo_m, view_ray_through(view, centre_px, size_px), choice_shift(view),
                                       no_hint());
-    if (answer.cls != kClassMiss) depth_m = answer.t * view_cosine_through(view, centre_px, size_px);
+    if (answer.cls != kClassMiss) depth_m = max(answer.t * view_cosine_through(view, centre_px, size_px), kSeenNear_m);
   }
-  SeenStarts(starts_address).v[seen_row(view_index / 2, tile.y, size_px) + columns + tile.x] = floatBitsToUint(depth_m);
+  SeenDepths(depths_address).v[seen_row(view_index / 2, tile.y, size_px) + columns + tile.x] = depth_m;
 }
 
 void main() {
@@ -80,20 +79,18 @@ void main() {
   ivec2 tile_px = ivec2(int(gl_WorkGroupID.x), row % rows) * 8;
   ivec2 size_px = frame.constants.size_px;
   ViewConstants view = frame.constants.view[view_index];
+  if (kFirstEyes && tile_px.x >= size_px.x) {
+    look_beyond(frame.constants, view_index, tile_px / 8);
+    return;
+  }
   if (kMasked && tile_px.y < size_px.y &&
       is_hidden_tile(frame.constants.hidden_tiles_address, view_index, tile_px / 8, size_px)) {
     ivec3 texel = ivec3(tile_px + ivec2(gl_LocalInvocationID.xy), view_index);
     if (texel.x >= size_px.x || texel.y >= size_px.y) return;
-    imageStore(radiance_image, texel, vec4(0.0, 0.0, 0.0, 1.0));
-    imageStore(distance_image, texel, vec4(kHiddenDistance_m));
+    store_hidden(texel);
     if (kFirstEyes) {
       SeenSurfaces(surfaces_address).v[seen_pixel(texel, size_px)] = SeenSurface(vec3(0.0), kSeenNothing, kUnseen_m);
     }
-    if (kWithAov) imageStore(aov_image, texel, uvec4(uint(kClassMiss), 0xffffffffu, 0u, 0u));
-    return;
-  }
-  if (kFirstEyes && tile_px.x >= size_px.x) {
-    look_beyond(frame.constants, view_index, tile_px / 8);
     return;
   }
   // A coarse tile's rays are its first lanes', so that the others' parts of the group end at once.
@@ -114,11 +111,6 @@ void main() {
                                     view.pixel_angle_rad * float(rate), reads);
 
   ivec3 texel = ivec3(block_keeper(pixel, rate, size_px), view_index);
-  imageStore(radiance_image, texel, vec4(min(radiance * dials.radiance_scale, vec3(kPictureMax)), 1.0));
-  imageStore(distance_image, texel, vec4(answer.t));
+  store_ray(texel, answer, radiance, dials.radiance_scale, reads);
   if (kFirstEyes) keep_surface(texel, size_px, answer, view_ray_cosine(view, pixel, size_px));
-  if (kWithAov) {
-    imageStore(aov_image, texel,
-               uvec4(uint(answer.cls), uint(answer.probe), answer.lookups, answer.tries | 1u << 8 | reads << 16));
-  }
 }

@@ -69,8 +69,9 @@ RunInfo run_info(const WalkOptions& options, const Display& display) {
   info.samples = options.samples;
   info.foveation = options.foveation;
   const bool shares = options.second_from_first &&
-                      SecondEye::suits(info.views, foveation_of(options.foveation).has_value(), options.choice);
-  info.second_eye = shares ? "from the first" : "traced";
+                      SecondEye::suits(display.source->view_extent(), info.views,
+                                       foveation_of(options.foveation).has_value(), options.choice);
+  info.second_eye = shares ? kSecondEyeFromFirst : kSecondEyeTraced;
   info.pack = options.pack.filename().empty() ? options.pack.parent_path().filename() : options.pack.filename();
   info.build = read_build_info();
   info.started_utc = utc_now();

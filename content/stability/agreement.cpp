@@ -27,7 +27,10 @@ bool is_tie(const Reference& reference, glm::dvec3 x, glm::dvec3 d, double t_sta
     if (same_answer(answer, reference(moved, turned, t_start), scale_m)) return true;
   }
   const Answer own = reference(x, d, t_start);
-  if (own.cls != kClassMiss && same_answer(answer, reference(x, d, own.t + std::max(reach / speed, tie * own.t)), scale_m)) return true;
+  if (own.cls != kClassMiss) {
+    const double behind = own.t + std::max(reach / speed, tie * own.t);
+    if (same_answer(answer, reference(x, d, behind), scale_m)) return true;
+  }
   // Few rays need the closer look, at all distances: along a line of the grid the other answer may take one ray in a
   // thousand of those beside. Much nearer than floats resolve there is nothing to be found.
   constexpr int kCloser = 1 << 15;

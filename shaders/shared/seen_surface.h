@@ -3,17 +3,18 @@
 #define PROBEWALK_SHADERS_SHARED_SEEN_SURFACE_H
 
 #include "dialect.h"
+#include "pixel_list.h"
 
-// Kept a pair of eyes: a SeenSurface a pixel of the first one's picture, row-major; and float bits a tile, row-major:
-// the least depth in metres at which there might be what the rays of the second eye's tile meet, negative where that might
-// be beyond the picture's edge; and behind each row the depths at which its margin's tiles were seen.
+// Kept a pair of eyes: a SeenSurface a pixel of the first one's picture, row-major; and a depth in metres a tile,
+// row-major: the least at which there might be what the rays of the second eye's tile meet, negative where that might be
+// beyond the picture's edge; and behind each row the depths at which its margin's tiles were seen.
 
 PW_SHARED_BEGIN
 
 struct SeenSurface {
   pw_vec3 plane;   // RayAnswer::plane of a hit, relative to its probe
   pw_uint answer;  // the probe and the flags below; kSeenNothing: nobody can go by this pixel
-  float depth_m;   // along the eye's axis: as far as the ray was free
+  float depth_m;   // along the eye's axis, above 0: as far as the ray was free
 };
 
 PW_CONSTANT pw_uint kSeenMiss = 0x80000000u;
@@ -22,22 +23,11 @@ PW_CONSTANT pw_uint kSeenEnvironment = 0x20000000u;  // RayAnswer::environment
 PW_CONSTANT pw_uint kSeenFlags = 0xe0000000u;
 PW_CONSTANT pw_uint kSeenNothing = 0xffffffffu;
 
-// A ray that the first eye could not answer: left by ask_first_eye.comp, traced by trace_rest.comp.
+// A ray that the first eye could not answer; behind a PixelListHead.
 struct RestRay {
-  pw_uint pixel;   // x, y, view, kRestSideBits of each side
+  pw_uint pixel;   // listed_pixel
   float t_free_m;  // nothing is met before
 };
-
-// The list's head; an indirect dispatch of trace_rest.comp reads its first three words. The rays follow.
-struct RestHead {
-  pw_uint groups_x, groups_y, groups_z;
-  pw_uint count;
-};
-
-PW_CONSTANT int kRestSideBits = 13;
-// Rays of a group of trace_rest.comp, and groups at most: they take further rays in turn.
-PW_CONSTANT int kRestGroup = 64;
-PW_CONSTANT int kMaxRestGroups = 32768;
 
 // A picture is looked through in tiles of this many pixels a side.
 PW_CONSTANT int kSeenTile = 8;
@@ -52,7 +42,7 @@ PW_SHARED_END
 
 #ifdef __cplusplus
 namespace probewalk {
-static_assert(sizeof(SeenSurface) == 20 && sizeof(RestRay) == 8 && sizeof(RestHead) == 16);
+static_assert(sizeof(SeenSurface) == 20 && sizeof(RestRay) == 8);
 }
 #endif
 

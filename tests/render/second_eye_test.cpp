@@ -5,13 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "content/probe/tracer_f32.h"
 #include "gpu_test.h"
 #include "probe_room.h"
 #include "render/frame_renderer.h"
 #include "render/readback.h"
 #include "render/view.h"
-#include "shaders/shared/view_ray.h"
 
 namespace probewalk {
 namespace {
@@ -83,6 +81,10 @@ class SecondEyeTest : public test::GpuTest {
 
   static Against compare(const Drawn& drawn, const Drawn& plain, std::size_t view, VkExtent2D extent = kExtent) {
     Against a;
+    add(a, drawn, plain, view, extent);
+    return a;
+  }
+  static void add(Against& a, const Drawn& drawn, const Drawn& plain, std::size_t view, VkExtent2D extent = kExtent) {
     for (std::uint32_t y = 0; y < extent.height; ++y) {
       for (std::uint32_t x = 0; x < extent.width; ++x) {
         const std::size_t k = std::size_t{y} * kExtent.width + x;
@@ -97,7 +99,6 @@ class SecondEyeTest : public test::GpuTest {
         a.plain_walks += other.w & 255u;
       }
     }
-    return a;
   }
 
   const test::ProbeRoom room{128, 32};
@@ -114,13 +115,7 @@ TEST_F(SecondEyeTest, MeetsWhatTracingMeetsAndWalksLess) {
     EXPECT_EQ(drawn.distance_m[0], plain.distance_m[0]) << "the first eye traces as ever";
     EXPECT_EQ(drawn.counts[0], plain.counts[0]);
     EXPECT_EQ(drawn.shown[0].rgb, plain.shown[0].rgb);
-    const Against second = compare(drawn, plain, 1);
-    all.pixels += second.pixels;
-    all.not_walked += second.not_walked;
-    all.classes += second.classes;
-    all.farther_off += second.farther_off;
-    all.walks += second.walks;
-    all.plain_walks += second.plain_walks;
+    add(all, drawn, plain, 1);
   }
   const auto share = [&](std::size_t n) { return double(n) / double(all.pixels); };
   EXPECT_GT(share(all.not_walked), 0.5);
@@ -188,8 +183,9 @@ TEST_F(SecondEyeTest, OddViewsFoveationAndBaselinesAreTracedAsEver) {
   EXPECT_EQ(drawn.shown[1].rgb, other.shown[1].rgb);
   TracerChoice environment;
   environment.method = kMethodEnvironment;
-  EXPECT_FALSE(SecondEye::suits(2, false, environment));
-  EXPECT_TRUE(SecondEye::suits(4, false, {}));
+  EXPECT_FALSE(SecondEye::suits(kExtent, 2, false, environment));
+  EXPECT_TRUE(SecondEye::suits(kExtent, 4, false, {}));
+  EXPECT_FALSE(SecondEye::suits({8000, 100}, 2, false, {})) << "wider than a group looks through";
 }
 
 // A smaller picture than the tracer was made for (eyes whose resolution adapts) keeps its rows apart.
@@ -264,6 +260,45 @@ TEST_F(ClosePost, IsSeenThoughTheFirstEyeHasNotGotIt) {
   EXPECT_EQ(close_to_first, 0u) << "the scene tests nothing";
   EXPECT_GT(close_to_second, 500u) << "the scene tests nothing";
   EXPECT_EQ(still_close, close_to_second);
+}
+
+// The tiles of the margin have no bits in the mask: what the mask says of the picture's left edge is nothing to them.
+TEST_F(ClosePost, IsSeenWhereTheFirstEyesLensHidesItsLeftEdge) {
+  ProbeStore posts(device, with_post.grid, with_post.probe_count(), {.frame_slots = kFrameSlots});
+  posts.upload(with_post.upload());
+  const ViewFov fov{-0.75f, 0.75f, 0.6f, -0.6f};
+  const auto before = eyes({-1.0, 1.5, 0.62}, 0.0, 0.0, 0.063, fov), beside = eyes({0.345, 1.5, 0.62}, 0.0, 0.0, 0.063, fov);
+  const HiddenMesh left_half{{{-2, -2}, {0, -2}, {0, 2}, {-2, 2}}, {0, 1, 2, 0, 2, 3}};
+  const HiddenMesh corner{{{1.9f, 1.9f}, {2, 1.9f}, {2, 2}}, {0, 1, 2}};
+  FrameRenderer renderer(device, posts,
+                         {.tracer = {.extent_px = kExtent, .views = 2, .aov = true, .masked = true, .second_from_first = true},
+                          .target_format = kFormat});
+  const Image image(device, {kFormat, kExtent, 2, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT});
+  const auto frame = [&](const std::vector<ViewConstants>& views, const HiddenMesh& of_first) {
+    renderer.hide({of_first, corner});
+    FrameSettings settings;
+    settings.trace = default_dials(test::kRadianceScale);
+    FrameTarget target;
+    target.image = image.handle();
+    target.format = kFormat;
+    target.extent = kExtent;
+    target.layers = 2;
+    target.final_layout = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
+    renderer.record(target);
+    renderer.write(views, settings);
+    renderer.submit();
+    renderer.wait();
+  };
+  frame(before, corner);
+  frame(beside, left_half);
+  const auto drawn = read_floats(device, renderer.tracer().distance())[1];
+  const auto plain = draw(beside, {}, posts).distance_m[1];
+  std::size_t close = 0, still_close = 0;
+  for (std::size_t k = 0; k < plain.size(); ++k) {
+    close += plain[k] < 0.5f;
+    still_close += plain[k] < 0.5f && drawn[k] < 0.5f;
+  }
+  EXPECT_EQ(still_close, close);
 }
 
 }  // namespace

@@ -14,6 +14,7 @@
 #include "content/error.h"
 #include "content/pack/pack_format.h"
 #include "content/probe/probe_set.h"
+#include "render/second_eye.h"
 #include "render/view.h"
 #include "shaders/shared/display_transform.h"
 #include "tools/probewalk/commands.h"
@@ -303,7 +304,11 @@ void RenderJob::count(const Still& still, nlohmann::json& report) const {
   report["unknown_fraction"] = share(unknown);
   report["samples"] = arguments_.samples;
   report["foveation"] = arguments_.foveation;
-  if (arguments_.stereo) report["second_eye"] = arguments_.second_eye;
+  if (arguments_.stereo) {
+    const bool shares = arguments_.second_eye == kSecondEyeFromFirst &&
+                        SecondEye::suits(extent_, 2, foveation_of(arguments_.foveation).has_value(), choice_);
+    report["second_eye"] = shares ? kSecondEyeFromFirst : kSecondEyeTraced;
+  }
   report["rays_mean"] = static_cast<double>(rays) / static_cast<double>(lookups.size());
   report["lookups_mean"] = sum / static_cast<double>(lookups.size());
   report["lookups_p99"] = *p99;

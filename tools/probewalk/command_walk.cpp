@@ -11,6 +11,7 @@
 
 #include "content/error.h"
 #include "content/stream/http_fetch.h"
+#include "render/second_eye.h"
 #include "tools/probewalk/commands.h"
 #include "tools/probewalk/foveation_option.h"
 #include "tools/probewalk/method_options.h"

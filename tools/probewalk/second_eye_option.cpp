@@ -1,5 +1,7 @@
 #include "tools/probewalk/second_eye_option.h"
 
+#include "render/second_eye.h"
+
 namespace probewalk {
 
 void add_second_eye_option(CLI::App& command, std::string& name) {

@@ -6,10 +6,7 @@
 
 namespace probewalk {
 
-inline constexpr const char* kSecondEyeFromFirst = "from-first";
-inline constexpr const char* kSecondEyeTraced = "traced";
-
-// `name`: one of the above; the default is what it holds.
+// `name`: one of render's kSecondEye…; the default is what it holds.
 void add_second_eye_option(CLI::App& command, std::string& name);
 
 }  // namespace probewalk

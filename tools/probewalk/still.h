@@ -27,8 +27,8 @@ struct Still {
 // Keeps the pack's rooms on the device from one picture to the next.
 class StillDrawer {
  public:
-  // All must outlive the drawer. view_count eyes a picture; `samples`, `foveation` and `second_from_first` as in TracerOptions. `maps`: of a
-  // choice that needs some; copied to the device at once.
+  // All must outlive the drawer. view_count eyes a picture; `samples`, `foveation` and `second_from_first` as in
+  // TracerOptions. `maps`: of a choice that needs some; copied to the device at once.
   StillDrawer(const Pack& pack, const Device& device, VkExtent2D extent_px, std::uint32_t view_count,
               std::uint32_t samples, Progress& progress, const TracerChoice& choice = {},
               const BaselineMaps* maps = nullptr, const std::optional<Foveation>& foveation = std::nullopt,

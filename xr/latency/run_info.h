@@ -86,7 +86,7 @@ struct RunInfo {
   std::string method;           // how rays are traced
   std::uint32_t samples = 1;    // rays of a pixel at an edge
   std::string foveation = "off";  // fewer rays towards the rim: a name of render's foveation_levels()
-  std::string second_eye = "traced";  // or "from the first": how its rays are answered
+  std::string second_eye = "traced";  // or "from-first": render's kSecondEyeFromFirst
   std::string pack;
   std::string build;            // version, commit, compiler, build type; read_build_info()
   std::string started_utc;      // ISO 8601

@@ -97,7 +97,7 @@ TEST(Comparison, SaysWhatTimeWasPaidWith) {
   EXPECT_THAT(of_two(foveated).others[0].paid_with,
               ElementsAre(HasSubstr("before and after do not draw the same picture (foveation differ")));
   Runs eyes{walked(1), walked(2, {.gpu_scale = 0.9})};
-  eyes[1].info.second_eye = "from the first";
+  eyes[1].info.second_eye = "from-first";
   EXPECT_THAT(of_two(eyes).others[0].paid_with,
               ElementsAre(HasSubstr("before and after do not draw the same picture (second eye differ")));
   // Coarse, and no faster: nothing was bought.

@@ -17,7 +17,7 @@ layout(push_constant) uniform Push {
   uvec2 frame_address;
   uvec2 unused[3];
   uvec2 surfaces_address;
-  uvec2 starts_address;
+  uvec2 depths_address;
 };
 
 #include "first_eye.glsl"
@@ -31,7 +31,7 @@ void main() {
   int row = int(gl_WorkGroupID.y), rows = int(gl_NumWorkGroups.y), pair = int(gl_WorkGroupID.z);
   int columns = seen_columns(size_px), margin = seen_margin(columns), all = min(columns + margin, kSeenMostColumns);
   ViewConstants first = constants.view[2 * pair], second = constants.view[2 * pair + 1];
-  SeenStarts starts = SeenStarts(starts_address);
+  SeenDepths depths = SeenDepths(depths_address);
   for (int column = int(gl_LocalInvocationID.x); column < all; column += kSeenGroup) {
     float least = kSeenFar_m;
     for (int k = 0; k < kSeenTile * kSeenTile && column < columns; ++k) {
@@ -43,7 +43,7 @@ void main() {
     for (int k = 0; k < 9 && column >= columns; ++k) {
       int at = column - columns + k % 3 - 1, beside = row + k / 3 - 1;
       if (at < 0 || at >= margin || beside < 0 || beside >= rows) continue;
-      least = min(least, uintBitsToFloat(starts.v[seen_row(pair, beside, size_px) + columns + at]));
+      least = min(least, depths.v[seen_row(pair, beside, size_px) + columns + at]);
     }
     least_m[column] = least;
   }
@@ -59,6 +59,6 @@ void main() {
       near_m = min(near_m, least_m[k]);
       in_margin = in_margin || k >= columns;
     }
-    starts.v[seen_row(pair, row, size_px) + column] = floatBitsToUint(in_margin ? -near_m : near_m);
+    depths.v[seen_row(pair, row, size_px) + column] = in_margin ? -near_m : near_m;
   }
 }
