@@ -130,7 +130,7 @@ class BakeJob {
                                  options_.shares, folder.string(), options_.shares));
     }
     const BakeState state(folder, key);
-    std::vector<glm::vec3> kept_light = state.load_light();
+    std::vector<CachedLight> kept_light = state.load_light();
     const bool same_scene = earlier_ && earlier_->pack.manifest().scene_hash == manifest_.scene_hash;
     if (kept_light.empty() && same_scene) kept_light = earlier_->inputs.light.indirect;
     const LightField light(scene_, rays_, options_.light, progress_, std::move(kept_light));

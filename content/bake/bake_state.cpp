@@ -170,16 +170,16 @@ void BakeState::store_map(const fs::path& file, const Map& map, const MapInputs&
   write_hashed(file, std::move(bytes));
 }
 
-std::vector<glm::vec3> BakeState::load_light() const {
+std::vector<CachedLight> BakeState::load_light() const {
   const std::vector<std::byte> bytes = read_hashed(folder_ / kLightFile, kLightFileBytes);
-  std::vector<glm::vec3> values;
-  if (bytes.empty() || (bytes.size() - kHashBytes) % sizeof(glm::vec3) != 0) return values;
-  values.resize((bytes.size() - kHashBytes) / sizeof(glm::vec3));
+  std::vector<CachedLight> values;
+  if (bytes.empty() || (bytes.size() - kHashBytes) % sizeof(CachedLight) != 0) return values;
+  values.resize((bytes.size() - kHashBytes) / sizeof(CachedLight));
   std::memcpy(values.data(), bytes.data() + kHashBytes, bytes.size() - kHashBytes);
   return values;
 }
 
-void BakeState::store_light(const std::vector<glm::vec3>& values) const {
+void BakeState::store_light(const std::vector<CachedLight>& values) const {
   std::vector<std::byte> bytes(kHashBytes);
   const auto part = std::as_bytes(std::span(values));
   bytes.insert(bytes.end(), part.begin(), part.end());

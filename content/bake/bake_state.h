@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "content/bake/cached_light.h"
 #include "content/bake/rebake/map_inputs.h"
 #include "content/probe/probe_map.h"
 
@@ -21,9 +22,9 @@ class BakeState {
   static bool is_there(const std::filesystem::path& folder, const std::string& key);
 
   // The light cache's values (LightField::cache_values). Empty when it is not there or cannot be believed.
-  std::vector<glm::vec3> load_light() const;
+  std::vector<CachedLight> load_light() const;
   // Throws BadInput when the disk is full.
-  void store_light(const std::vector<glm::vec3>& values) const;
+  void store_light(const std::vector<CachedLight>& values) const;
 
   // A map by the place it was baked from and its size, and what it was made of. Nothing when it is not there or cannot
   // be believed.

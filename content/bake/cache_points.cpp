@@ -101,12 +101,14 @@ float CachePoints::open_fraction(const Point& point, glm::vec3 offset, float tan
   return std::clamp((free_m - tangential_m) / (0.15f * reach_m), 0.0f, 1.0f);
 }
 
-glm::vec3 CachePoints::interpolate(const std::vector<glm::vec3>& values, glm::vec3 position_m, glm::vec3 normal) const {
+glm::vec3 CachePoints::interpolate(const std::vector<CachedLight>& values, glm::vec3 position_m,
+                                   glm::vec3 normal) const {
   glm::vec3 open_sum(0.0f), blocked_sum(0.0f);
   float blocked_weights = 0.0f;
   const float open_weights = for_each_weight(position_m, normal, [&](std::uint32_t point, float open, float blocked) {
-    open_sum += values[point] * open;
-    blocked_sum += values[point] * blocked;
+    const glm::vec3 lux = values[point].at(normal - points_[point].normal);
+    open_sum += lux * open;
+    blocked_sum += lux * blocked;
     blocked_weights += blocked;
   });
   if (open_weights > kVanishing) return open_sum / open_weights;
@@ -115,12 +117,24 @@ glm::vec3 CachePoints::interpolate(const std::vector<glm::vec3>& values, glm::ve
   return blocked_weights > kVanishing ? blocked_sum / blocked_weights : glm::vec3(0.0f);
 }
 
-glm::vec3 CachePoints::interpolate_seen(const std::vector<glm::vec3>& values, glm::vec3 position_m,
+glm::vec3 CachePoints::interpolate_seen(const std::vector<CachedLight>& values, glm::vec3 position_m,
                                         glm::vec3 normal) const {
   glm::vec3 sum(0.0f);
-  const float weights =
-      for_each_weight(position_m, normal, [&](std::uint32_t point, float open, float) { sum += values[point] * open; });
+  const float weights = for_each_weight(position_m, normal, [&](std::uint32_t point, float open, float) {
+    if (open > 0.0f) sum += values[point].at(normal - points_[point].normal) * open;
+  });
   return weights > kVanishing ? sum / weights : glm::vec3(0.0f);
+}
+
+CachedLight CachePoints::mean_around(const std::vector<CachedLight>& values, std::size_t k) const {
+  const Point& at = points_[k];
+  CachedLight mean;
+  const float weights = for_each_weight(at.position_m, at.normal, [&](std::uint32_t point, float open, float) {
+    if (!(open > 0.0f)) return;
+    mean.lux += values[point].at(at.normal - points_[point].normal) * open;
+    mean.turn += values[point].turn * open;
+  });
+  return weights > kVanishing ? mean * (1.0f / weights) : values[k];
 }
 
 std::uint64_t CachePoints::identity(std::size_t k) const {

@@ -11,6 +11,7 @@
 #include <glm/glm.hpp>
 #include <vector>
 
+#include "content/bake/cached_light.h"
 #include "content/bake/point_index.h"
 #include "content/progress.h"
 #include "content/scene/ray_scene.h"
@@ -40,10 +41,12 @@ class CachePoints {
   float spacing_m() const { return spacing_m_; }
   std::uint64_t rays_cast() const { return rays_cast_; }
 
-  // Interpolates values (one per point) at a surface position with unit normal. Thread-safe.
-  glm::vec3 interpolate(const std::vector<glm::vec3>& values, glm::vec3 position_m, glm::vec3 normal) const;
+  // Irradiance (lux) by values (one per point) at a surface position with unit normal. Thread-safe.
+  glm::vec3 interpolate(const std::vector<CachedLight>& values, glm::vec3 position_m, glm::vec3 normal) const;
   // The same from points that see the place alone: black where none does, as within walls, where few rays stray.
-  glm::vec3 interpolate_seen(const std::vector<glm::vec3>& values, glm::vec3 position_m, glm::vec3 normal) const;
+  glm::vec3 interpolate_seen(const std::vector<CachedLight>& values, glm::vec3 position_m, glm::vec3 normal) const;
+  // The mean of the values around a point, its own among them.
+  CachedLight mean_around(const std::vector<CachedLight>& values, std::size_t k) const;
   // Calls visit(point) for each point whose value counts there; returns whether any of them sees the place.
   template <typename Visit>
   bool for_each_seen(glm::vec3 position_m, glm::vec3 normal, Visit&& visit) const {

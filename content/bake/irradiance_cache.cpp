@@ -22,7 +22,7 @@ int rays_of_bounce(int samples, int bounce) {
 }
 constexpr float kMaxTailRatio = 0.95f;
 
-using Values = std::vector<glm::vec3>;
+using Values = std::vector<CachedLight>;
 
 // Points that light passes between, by the least of each set, whatever the order in which threads join them.
 class PointSets {
@@ -57,7 +57,7 @@ class PointSets {
 // Of each set, at its first point.
 std::vector<glm::dvec3> totals(const Values& values, PointSets& sets) {
   std::vector<glm::dvec3> sums(values.size(), glm::dvec3(0.0));
-  for (std::size_t k = 0; k < values.size(); ++k) sums[sets.first_of(std::uint32_t(k))] += glm::dvec3(values[k]);
+  for (std::size_t k = 0; k < values.size(); ++k) sums[sets.first_of(std::uint32_t(k))] += glm::dvec3(values[k].lux);
   return sums;
 }
 
@@ -79,12 +79,12 @@ struct IrradianceCache::Gather {
   std::atomic<std::uint64_t> done{0};
 
   Values direct_light(std::uint64_t& cast) {
-    Values values(points.size(), glm::vec3(0.0f));
+    Values values(points.size());
     std::atomic<std::uint64_t> all_cast{0};
     for_each_point([&](std::size_t k) {
       std::uint64_t own = 0;
       const CachePoints::Point& p = points[k];
-      values[k] = direct.irradiance(p.position_m, p.geometric_normal, p.normal, own);
+      values[k].lux = direct.irradiance(p.position_m, p.geometric_normal, p.normal, own);
       all_cast += own;
     });
     cast += all_cast;
@@ -95,8 +95,8 @@ struct IrradianceCache::Gather {
   // null.
   Values gather(const Values& source, int samples, std::uint32_t pass, Values* emitted, PointSets* sets,
                 std::uint64_t& cast) {
-    Values values(points.size(), glm::vec3(0.0f));
-    if (emitted) emitted->assign(points.size(), glm::vec3(0.0f));
+    Values values(points.size());
+    if (emitted) emitted->assign(points.size(), CachedLight());
     for_each_point([&](std::size_t k) {
       gather_point(k, source, samples, pass, values[k], emitted ? &(*emitted)[k] : nullptr, sets);
     });
@@ -106,11 +106,9 @@ struct IrradianceCache::Gather {
 
   // Each point the mean of its open neighbourhood: what few rays found (a patch of sun) must not show as a blotch.
   Values smooth(const Values& values) const {
-    Values smoothed = values;
-    tbb::parallel_for(std::size_t(0), points.size(), [&](std::size_t k) {
-      const CachePoints::Point& p = points[k];
-      smoothed[k] = points.interpolate(values, p.position_m, p.normal);
-    });
+    Values smoothed(points.size());
+    tbb::parallel_for(std::size_t(0), points.size(),
+                      [&](std::size_t k) { smoothed[k] = points.mean_around(values, k); });
     return smoothed;
   }
 
@@ -125,41 +123,44 @@ struct IrradianceCache::Gather {
     if (progress.cancelled()) throw Interrupted("interrupted while lighting; nothing of it is kept");
   }
 
-  void gather_point(std::size_t k, const Values& source, int samples, std::uint32_t pass, glm::vec3& reflected,
-                    glm::vec3* emitted, PointSets* sets) const {
+  void gather_point(std::size_t k, const Values& source, int samples, std::uint32_t pass, CachedLight& reflected,
+                    CachedLight* emitted, PointSets* sets) const {
     const CachePoints::Point& point = points[k];
     glm::vec3 tangent, bitangent;
     tangent_frame(point.normal, tangent, bitangent);
     const glm::vec3 origin = point.position_m + point.geometric_normal * ray_offset_m(point.position_m);
     const std::uint32_t turn = mix_place(point.position_m, seed + pass);
     const float spread_rad = std::sqrt(std::numbers::pi_v<float> / static_cast<float>(samples));
-    glm::vec3 sum(0.0f), own(0.0f);
+    CachedLight sum, own;
     for (int s = 0; s < samples; ++s) {
       const glm::vec3 local = cosine_direction(rotate_pattern(hammersley(s, samples), turn));
       const glm::vec3 direction = tangent * local.x + bitangent * local.y + point.normal * local.z;
       if (glm::dot(direction, point.geometric_normal) <= 0.0f) continue;
       const SurfaceHit hit = rays.closest(origin, direction);
       if (!hit.hit) {
-        if (emitted) own += scene.sky.radiance(direction);
+        if (emitted) own.add(scene.sky.radiance(direction), direction, point.normal);
         continue;
       }
       const SurfacePoint surface = surface_at(scene, hit, direction, hit.t * spread_rad);
       if (surface.unlit) continue;
-      if (emitted && !direct.emitters().is_patch[hit.triangle]) own += surface.emission_cd_m2;
-      sum += surface.albedo * points.interpolate_seen(source, surface.position_m, surface.normal);
+      if (emitted && !direct.emitters().is_patch[hit.triangle]) {
+        own.add(surface.emission_cd_m2, direction, point.normal);
+      }
+      sum.add(surface.albedo * points.interpolate_seen(source, surface.position_m, surface.normal), direction,
+              point.normal);
       if (!sets) continue;
       points.for_each_seen(surface.position_m, surface.normal,
                            [&](std::uint32_t p) { sets->join(std::uint32_t(k), p); });
     }
     // Cosine-distributed: irradiance = pi * mean radiance; reflected radiance = albedo / pi * irradiance.
-    reflected = sum / static_cast<float>(samples);
+    reflected = sum * (1.0f / static_cast<float>(samples));
     if (emitted) *emitted = own * (std::numbers::pi_v<float> / static_cast<float>(samples));
   }
 };
 
 IrradianceCache::IrradianceCache(const Scene& scene, const RayScene& rays, const CachePoints& points,
                                  const DirectLight& direct, const LightOptions& options, Progress& progress,
-                                 std::vector<glm::vec3> kept)
+                                 std::vector<CachedLight> kept)
     : points_(points) {
   if (!kept.empty() && kept.size() == points_.size()) {
     indirect_ = std::move(kept);
@@ -198,7 +199,8 @@ IrradianceCache::IrradianceCache(const Scene& scene, const RayScene& rays, const
     for (int c = 0; c < 3; ++c) {
       const double was = totals_before[part][c], is = totals_now[part][c];
       const float ratio = was > 0.0 ? std::min(static_cast<float>(is / was), kMaxTailRatio) : 0.0f;
-      indirect_[k][c] += last[k][c] * (1.0f / (1.0f - ratio));
+      indirect_[k].lux[c] += last[k].lux[c] * (1.0f / (1.0f - ratio));
+      indirect_[k].turn[c] += last[k].turn[c] * (1.0f / (1.0f - ratio));
     }
   }
   indirect_ = gather.smooth(indirect_);

@@ -17,19 +17,19 @@ class IrradianceCache {
   // The points must outlive the cache. kept: values() of an earlier, equal cache; used when they are as many as there
   // are points. Throws Interrupted when progress is cancelled.
   IrradianceCache(const Scene& scene, const RayScene& rays, const CachePoints& points, const DirectLight& direct,
-                  const LightOptions& options, Progress& progress, std::vector<glm::vec3> kept);
+                  const LightOptions& options, Progress& progress, std::vector<CachedLight> kept);
 
   // Irradiance (lux) from everything that DirectLight does not count: sky, large emitters, reflected light.
   glm::vec3 indirect(glm::vec3 position_m, glm::vec3 normal) const {
     return points_.interpolate(indirect_, position_m, normal);
   }
-  const std::vector<glm::vec3>& values() const { return indirect_; }
+  const std::vector<CachedLight>& values() const { return indirect_; }
   std::uint64_t rays_cast() const { return rays_cast_; }
 
  private:
   struct Gather;
   const CachePoints& points_;
-  std::vector<glm::vec3> indirect_;
+  std::vector<CachedLight> indirect_;
   std::uint64_t rays_cast_ = 0;
 };
 

@@ -25,7 +25,7 @@ constexpr std::size_t kMaxPoints = 300000;
 
 struct LightField::Impl {
   Impl(const Scene& scene_in, const RayScene& rays_in, const LightOptions& options, Progress& progress,
-       std::vector<glm::vec3> kept)
+       std::vector<CachedLight> kept)
       : scene(scene_in),
         rays(rays_in),
         points(scene_in, rays_in, options.cache_spacing_m, kMaxPoints, progress),
@@ -42,7 +42,7 @@ struct LightField::Impl {
 };
 
 LightField::LightField(const Scene& scene, const RayScene& rays, const LightOptions& options, Progress& progress,
-                       std::vector<glm::vec3> kept) {
+                       std::vector<CachedLight> kept) {
   std::optional<tbb::global_control> limit;
   if (options.threads > 0) limit.emplace(tbb::global_control::max_allowed_parallelism, options.threads);
   impl_ = std::make_unique<Impl>(scene, rays, options, progress, std::move(kept));
@@ -98,7 +98,7 @@ std::size_t LightField::cache_points() const {
   return impl_->points.size();
 }
 
-const std::vector<glm::vec3>& LightField::cache_values() const {
+const std::vector<CachedLight>& LightField::cache_values() const {
   return impl_->cache.values();
 }
 

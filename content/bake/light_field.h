@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "content/bake/cached_light.h"
 #include "content/progress.h"
 #include "content/scene/ray_scene.h"
 #include "content/scene/scene.h"
@@ -42,7 +43,7 @@ class LightField {
   // Builds the irradiance cache (long: reports progress, obeys cancellation). Deterministic, whatever the threads.
   // kept: cache_values() of an equal scene and equal options, which spare the work; others than that many are ignored.
   LightField(const Scene& scene, const RayScene& rays, const LightOptions& options, Progress& progress,
-             std::vector<glm::vec3> kept = {});
+             std::vector<CachedLight> kept = {});
   ~LightField();
   LightField(const LightField&) = delete;
   LightField& operator=(const LightField&) = delete;
@@ -67,7 +68,7 @@ class LightField {
   // Rays cast so far: by the cache, and shadow rays by outgoing().
   std::uint64_t rays_cast() const;
   std::size_t cache_points() const;
-  const std::vector<glm::vec3>& cache_values() const;
+  const std::vector<CachedLight>& cache_values() const;
 
   // What the field is made of, and whom to tell of what is read from it (null = nobody; not while it is read).
   const CachePoints& points() const;

@@ -1,6 +1,6 @@
 // How far baked light is off, judged by unbiased paths that share no light sampling with it: by hand, not run by ctest.
-//   light_judge [--texels N] [--paths N] [--probes N] [--samples N] [--spacing-mm N] [--worst N] SCENE...
-// At places that probes see, the light that arrives as the bake has it is set beside the mean of reference paths, part
+//   light_judge [--texels N] [--paths N] [--probes N] [--samples N] [--spacing-mm N] [--worst N] [--bounce N] SCENE...
+// At places that probes see (--bounce 1: that those places see, where light comes from), the light that arrives as the bake has it is set beside the mean of reference paths, part
 // by part: lights and patches, which the bake samples directly; the rest, which its cache holds. A part's bias is told
 // as a share of all light, with the standard error over the places; its noise beside that of the judge.
 #include <fmt/format.h>
@@ -48,7 +48,7 @@ struct Place {
 };
 
 struct Options {
-  int texels = 300, paths = 4096, probes = 4, samples = 128, spacing_mm = 250, worst = 0;
+  int texels = 300, paths = 4096, probes = 4, samples = 128, spacing_mm = 250, worst = 0, bounce = 0;
 };
 
 // Harmonic mean over the hemisphere: small where something is near.
@@ -96,7 +96,17 @@ void judge(const std::filesystem::path& file, const Options& options) {
     const glm::vec3 from(placed.sites[pick() % placed.sites.size()].position_m);
     const SurfaceHit hit = rays.closest(from, direction);
     if (!hit.hit) continue;
-    const SurfacePoint surface = surface_at(scene, hit, direction, 0.01f);
+    SurfacePoint surface = surface_at(scene, hit, direction, 0.01f);
+    if (options.bounce > 0) {
+      glm::vec3 tangent, bitangent;
+      tangent_frame(surface.normal, tangent, bitangent);
+      const glm::vec3 local = cosine_direction({unit(), unit()});
+      const glm::vec3 away = tangent * local.x + bitangent * local.y + surface.normal * local.z;
+      const glm::vec3 origin = surface.position_m + surface.geometric_normal * ray_offset_m(surface.position_m);
+      const SurfaceHit next = rays.closest(origin, away);
+      if (!next.hit) continue;
+      surface = surface_at(scene, next, away, 0.05f);
+    }
     if (!surface.unlit && luminance(surface.albedo) > 0.01f) places.push_back({surface});
   }
   tbb::parallel_for(std::size_t(0), places.size(), [&](std::size_t k) {
@@ -165,6 +175,17 @@ void judge(const std::filesystem::path& file, const Options& options) {
                spread / all, std::sqrt(own) / all, std::sqrt(std::max(square - own_square, 0.0)),
                std::sqrt(own_square));
   }
+  const auto percentiles = [&](Part part) {
+    std::vector<double> shares;
+    for (const Place& place : places) {
+      shares.push_back(std::abs(place.baked[part] - place.judged[part]) / std::hypot(place.judged[kAll], dark));
+    }
+    std::sort(shares.begin(), shares.end());
+    const auto at = [&](double share) { return shares[std::size_t(share * double(shares.size() - 1))]; };
+    fmt::print("  off by a share of the place's light: {:<22} p50 {:.4f}  p75 {:.4f}  p90 {:.4f}  p97 {:.4f}\n",
+               kNames[part], at(0.5), at(0.75), at(0.9), at(0.97));
+  };
+  for (const Part part : {kDirect, kEmitted, kReflected, kAll}) percentiles(part);
   std::vector<double> off;
   for (const Place& place : places) off.push_back(place.baked[kAll] - place.judged[kAll]);
   std::sort(off.begin(), off.end(), [](double a, double b) { return std::abs(a) > std::abs(b); });
@@ -193,7 +214,8 @@ int run(const std::vector<std::string>& arguments) {
   std::vector<std::filesystem::path> scenes;
   const std::map<std::string, int*> numbers{{"--texels", &options.texels},         {"--paths", &options.paths},
                                             {"--probes", &options.probes},         {"--samples", &options.samples},
-                                            {"--spacing-mm", &options.spacing_mm}, {"--worst", &options.worst}};
+                                            {"--spacing-mm", &options.spacing_mm}, {"--worst", &options.worst},
+                                            {"--bounce", &options.bounce}};
   for (std::size_t k = 0; k < arguments.size(); ++k) {
     const auto number = numbers.find(arguments[k]);
     if (number == numbers.end()) {
@@ -210,7 +232,7 @@ int run(const std::vector<std::string>& arguments) {
   if (options.texels < 2) throw std::runtime_error("--texels: at least 2, or no standard error can be told");
   if (scenes.empty()) {
     throw std::runtime_error(
-        "usage: light_judge [--texels N] [--paths N] [--probes N] [--samples N] [--spacing-mm N] [--worst N] SCENE...");
+        "usage: light_judge [--texels N] [--paths N] [--probes N] [--samples N] [--spacing-mm N] [--worst N] [--bounce N] SCENE...");
   }
   for (const std::filesystem::path& scene : scenes) judge(scene, options);
   return 0;

@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::array<char, 16> kMagic{'p', 'r', 'o', 'b', 'e', 'w', 'a', 'l', 'k', ' ', 'i', 'n', 'p', 'u', 't', '1'};
+constexpr std::array<char, 16> kMagic{'p', 'r', 'o', 'b', 'e', 'w', 'a', 'l', 'k', ' ', 'i', 'n', 'p', 'u', 't', '2'};
 constexpr std::size_t kHashBytes = 32;
 constexpr std::uint64_t kMostBytes = 1u << 30;
 constexpr std::uint64_t kMostCells = 1u << 26, kMostPoints = 1u << 24;

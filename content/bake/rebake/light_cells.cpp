@@ -33,8 +33,8 @@ LightCells hash_light(const LightField& light, const SpaceCells& cells) {
   result.points.assign(cells.count(), 0);
   result.emitters.assign(cells.count(), 0);
   result.identities.resize(points.size());
+  result.total.resize(points.size());
   result.indirect = light.cache_values();
-  result.total = result.indirect;
   tbb::parallel_for(std::size_t(0), points.size(), [&](std::size_t k) {
     constexpr double kRounding_m = 1e-4;
     const CachePoints::Point& point = points[k];
@@ -43,7 +43,7 @@ LightCells hash_light(const LightField& light, const SpaceCells& cells) {
     add_in_box(cells, glm::dvec3(point.position_m) - half_m, glm::dvec3(point.position_m) + half_m,
                result.identities[k], result.points);
     std::uint64_t cast = 0;
-    result.total[k] += light.direct().irradiance(point.position_m, point.geometric_normal, point.normal, cast);
+    result.total[k] = result.indirect[k].lux + light.direct().irradiance(point.position_m, point.geometric_normal, point.normal, cast);
   });
   const std::vector<std::uint64_t> emitters = emitter_hashes(light.direct().emitters());
   const std::uint64_t all = short_hash(std::as_bytes(std::span(emitters)));

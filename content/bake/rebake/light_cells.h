@@ -16,8 +16,8 @@ struct LightCells {
   std::vector<std::uint64_t> emitters;  // what is known of emitters there; everywhere(): all emitters
   // By cache point.
   std::vector<std::uint64_t> identities;
-  std::vector<glm::vec3> indirect;  // values of the cache
-  std::vector<glm::vec3> total;     // lux that arrive there, direct light included
+  std::vector<CachedLight> indirect;  // values of the cache
+  std::vector<glm::vec3> total;       // lux that arrive there, direct light included
 };
 
 LightCells hash_light(const LightField& light, const SpaceCells& cells);
