@@ -47,18 +47,26 @@ CachePoints::CachePoints(const Scene& scene, const RayScene& rays, double spacin
   spacing_m_ = scattered.spacing_m;
   points_ = std::move(scattered.points);
   rays_cast_ = scattered.rays_cast;
-  look_around(rays, progress);
+  look_around(rays, 0, progress);
   build_levels();
 }
 
-void CachePoints::look_around(const RayScene& rays, Progress& progress) {
-  tbb::parallel_for(std::size_t(0), points_.size(), [&](std::size_t k) {
+void CachePoints::add(std::vector<Point> closer, const RayScene& rays, Progress& progress) {
+  const std::size_t first = points_.size();
+  points_.insert(points_.end(), closer.begin(), closer.end());
+  look_around(rays, first, progress);
+  levels_.clear();
+  build_levels();
+}
+
+void CachePoints::look_around(const RayScene& rays, std::size_t first, Progress& progress) {
+  tbb::parallel_for(first, points_.size(), [&](std::size_t k) {
     if (progress.cancelled()) return;
     Point& point = points_[k];
     const glm::vec3 n = point.geometric_normal;
     glm::vec3 tangent, bitangent;
     tangent_frame(point.normal, tangent, bitangent);
-    const float reach_m = kReachPerSpacing * point.spacing_m, height_m = kLookHeight_m * point.spacing_m / spacing_m_;
+    const float reach_m = kReachPerSpacing * point.spacing_m, height_m = look_height_m(point);
     for (int s = 0; s < kSectors; ++s) {
       const glm::vec2 along = sector_direction(s);
       const glm::vec3 direction = tangent * along.x + bitangent * along.y + n * kLookTilt;
@@ -68,7 +76,11 @@ void CachePoints::look_around(const RayScene& rays, Progress& progress) {
     }
   });
   if (progress.cancelled()) throw Interrupted("interrupted while lighting; nothing of it is kept");
-  rays_cast_ += points_.size() * kSectors;
+  rays_cast_ += (points_.size() - first) * kSectors;
+}
+
+float CachePoints::look_height_m(const Point& point) const {
+  return kLookHeight_m * point.spacing_m / spacing_m_;
 }
 
 void CachePoints::build_levels() {
@@ -117,13 +129,37 @@ glm::vec3 CachePoints::interpolate(const std::vector<CachedLight>& values, glm::
   return blocked_weights > kVanishing ? blocked_sum / blocked_weights : glm::vec3(0.0f);
 }
 
-glm::vec3 CachePoints::interpolate_seen(const std::vector<CachedLight>& values, glm::vec3 position_m,
-                                        glm::vec3 normal) const {
+glm::vec3 CachePoints::interpolate_seen(const std::vector<CachedLight>& values, glm::vec3 position_m, glm::vec3 normal,
+                                        const RayScene& rays) const {
   glm::vec3 sum(0.0f);
-  const float weights = for_each_weight(position_m, normal, [&](std::uint32_t point, float open, float) {
+  float weights = for_each_weight(position_m, normal, [&](std::uint32_t point, float open, float) {
     if (open > 0.0f) sum += values[point].at(normal - points_[point].normal) * open;
   });
+  if (weights > kVanishing) return sum / weights;
+  sum = glm::vec3(0.0f), weights = 0.0f;
+  for_each_weight(position_m, normal, [&](std::uint32_t point, float, float blocked) {
+    const Point& p = points_[point];
+    if (!(blocked > 0.0f)) return;
+    const float height_m = look_height_m(p);
+    const glm::vec3 from = position_m + normal * height_m, to = p.position_m + p.geometric_normal * height_m;
+    if (rays.occluded(from, to - from, 0.0f, 1.0f)) return;
+    sum += values[point].at(normal - p.normal) * blocked;
+    weights += blocked;
+  });
   return weights > kVanishing ? sum / weights : glm::vec3(0.0f);
+}
+
+std::optional<glm::vec3> CachePoints::by_others(const std::vector<CachedLight>& values, std::size_t k) const {
+  const Point& at = points_[k];
+  glm::vec3 sum(0.0f);
+  const float weights = for_each_weight(
+      at.position_m, at.normal,
+      [&](std::uint32_t point, float open, float) {
+        if (open > 0.0f) sum += values[point].at(at.normal - points_[point].normal) * open;
+      },
+      std::uint32_t(k));
+  if (!(weights > kVanishing)) return {};
+  return sum / weights;
 }
 
 CachedLight CachePoints::mean_around(const std::vector<CachedLight>& values, std::size_t k) const {

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <optional>
 #include <vector>
 
 #include "content/bake/cached_light.h"
@@ -36,6 +37,9 @@ class CachePoints {
   // Spacing is raised until at most max_points are needed, beside as many closer ones; spacing_m() says what it became.
   CachePoints(const Scene& scene, const RayScene& rays, double spacing_m, std::size_t max_points, Progress& progress);
 
+  // Adds points that are closer together than those so far, without their nearness.
+  void add(std::vector<Point> closer, const RayScene& rays, Progress& progress);
+
   std::size_t size() const { return points_.size(); }
   const Point& operator[](std::size_t k) const { return points_[k]; }
   float spacing_m() const { return spacing_m_; }
@@ -43,8 +47,12 @@ class CachePoints {
 
   // Irradiance (lux) by values (one per point) at a surface position with unit normal. Thread-safe.
   glm::vec3 interpolate(const std::vector<CachedLight>& values, glm::vec3 position_m, glm::vec3 normal) const;
-  // The same from points that see the place alone: black where none does, as within walls, where few rays stray.
-  glm::vec3 interpolate_seen(const std::vector<CachedLight>& values, glm::vec3 position_m, glm::vec3 normal) const;
+  // The same from points that see the place alone, which rays decide where none is known to: things stand about it. Black
+  // where none does, as within walls, where few rays stray.
+  glm::vec3 interpolate_seen(const std::vector<CachedLight>& values, glm::vec3 position_m, glm::vec3 normal,
+                             const RayScene& rays) const;
+  // What the others around say of the irradiance at a point; nothing where none sees it.
+  std::optional<glm::vec3> by_others(const std::vector<CachedLight>& values, std::size_t k) const;
   // The mean of the values around a point, its own among them.
   CachedLight mean_around(const std::vector<CachedLight>& values, std::size_t k) const;
   // Calls visit(point) for each point whose value counts there; returns whether any of them sees the place.
@@ -76,12 +84,14 @@ class CachePoints {
     PointIndex index;
   };
 
-  void look_around(const RayScene& rays, Progress& progress);
+  void look_around(const RayScene& rays, std::size_t first, Progress& progress);
   void build_levels();
+  float look_height_m(const Point& point) const;
   float open_fraction(const Point& point, glm::vec3 offset, float tangential_m) const;
+  static constexpr std::uint32_t kNobody = ~0u;
   // Calls visit(point, weight if it sees the place, weight if it need not); returns the sum of the former.
   template <typename Visit>
-  float for_each_weight(glm::vec3 position_m, glm::vec3 normal, Visit&& visit) const;
+  float for_each_weight(glm::vec3 position_m, glm::vec3 normal, Visit&& visit, std::uint32_t without = kNobody) const;
 
   float spacing_m_ = 0.25f;
   std::uint64_t rays_cast_ = 0;
@@ -90,7 +100,8 @@ class CachePoints {
 };
 
 template <typename Visit>
-float CachePoints::for_each_weight(glm::vec3 position_m, glm::vec3 normal, Visit&& visit) const {
+float CachePoints::for_each_weight(glm::vec3 position_m, glm::vec3 normal, Visit&& visit,
+                                   std::uint32_t without) const {
   if (levels_.empty()) return 0.0f;
   // The closer points speak first; the wider ones have what they leave: nothing where there are enough of them.
   const PointIndex::Found widest = levels_.front().index.at(position_m);
@@ -103,7 +114,7 @@ float CachePoints::for_each_weight(glm::vec3 position_m, glm::vec3 normal, Visit
       const float facing = glm::dot(member.normal, normal), across = glm::dot(offset, member.normal);
       const float straight_square = glm::dot(offset, offset);
       const float square = (straight_square + (kOffPlane * kOffPlane - 1.0f) * across * across) * inverse_square;
-      if (facing <= kLeastFacing || square >= 1.0f) continue;
+      if (facing <= kLeastFacing || square >= 1.0f || member.point == without) continue;
       const Point& point = points_[member.point];
       const float along_m = std::sqrt(std::max(straight_square - across * across, 0.0f));
       const float kernel = (1.0f - square) * (1.0f - square);

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "content/bake/patterns.h"
+#include "content/bake/polygon_light.h"
 #include "content/bake/surface_point.h"
 
 namespace probewalk {
@@ -88,6 +89,29 @@ float visible_sun(const RayScene& rays, glm::vec3 origin, glm::vec3 to_light, st
   return static_cast<float>(seen) / kDiscSamples;
 }
 
+// Whether the receiver is so near that the patch's faces say more than its samples.
+constexpr float kNearRadii = 3.0f;
+constexpr float kInPlane = 1e-3f;  // radii
+bool is_near(const EmissivePatch& patch, const Receiver& receiver) {
+  const glm::vec3 offset = patch.centre_m - receiver.position_m;
+  const float near_m = kNearRadii * patch.radius_m;
+  return !patch.faces.empty() && glm::dot(offset, offset) < near_m * near_m;
+}
+
+glm::vec3 unshadowed_faces(const EmissivePatch& patch, const Receiver& receiver) {
+  glm::vec3 sum(0.0f);
+  for (const EmissivePatch::Face& face : patch.faces) {
+    const std::array<glm::vec3, 3> corners_m{face.corners_m[0] - receiver.position_m,
+                                             face.corners_m[1] - receiver.position_m,
+                                             face.corners_m[2] - receiver.position_m};
+    const float in_front_m = -glm::dot(corners_m[0], face.normal);
+    if (std::abs(in_front_m) < kInPlane * patch.radius_m) continue;  // seen edge on; its own triangles among them
+    if (in_front_m > 0.0f ? !face.front_open : !face.back_open) continue;
+    sum += face.radiance * triangle_cosine_integral(corners_m, receiver.geometric_normal, receiver.normal);
+  }
+  return sum;
+}
+
 }  // namespace
 
 glm::vec3 EmitterLight::unshadowed(std::uint32_t emitter, const Receiver& receiver) const {
@@ -95,6 +119,7 @@ glm::vec3 EmitterLight::unshadowed(std::uint32_t emitter, const Receiver& receiv
   const EmissivePatch& patch = emitters_.patches[emitter - emitters_.lights.size()];
   const float behind_m = glm::dot(patch.centre_m - receiver.position_m, receiver.geometric_normal);
   if (behind_m < -patch.radius_m) return glm::vec3(0.0f);
+  if (is_near(patch, receiver)) return unshadowed_faces(patch, receiver);
   glm::vec3 sum(0.0f);
   for (const EmissivePatch::Sample& sample : patch.samples) sum += unshadowed_sample(patch, sample, receiver);
   return sum;
@@ -147,8 +172,24 @@ glm::vec3 EmitterLight::irradiance_by_one(std::uint32_t emitter, std::uint32_t w
   const glm::vec3 origin = receiver.position_m + receiver.geometric_normal * ray_offset_m(receiver.position_m);
   if (is_patch(emitter)) {
     const EmissivePatch& patch = emitters_.patches[emitter - emitters_.lights.size()];
-    const EmissivePatch::Sample& sample = patch.samples[word % kPatchSamples];
-    const glm::vec3 value = float(kPatchSamples) * unshadowed_sample(patch, sample, receiver);
+    std::uint32_t chosen = word % kPatchSamples;
+    glm::vec3 value(0.0f);
+    if (is_near(patch, receiver)) {
+      // A sample by what it sends, for whether light arrives; the faces for how much.
+      std::array<float, kPatchSamples> sums{};
+      float sum = 0.0f;
+      for (std::uint32_t k = 0; k < kPatchSamples; ++k) {
+        sums[k] = sum += luminance(unshadowed_sample(patch, patch.samples[k], receiver));
+      }
+      if (!(sum > 0.0f)) return glm::vec3(0.0f);
+      const float at = static_cast<float>(word >> 8) * (1.0f / 16777216.0f) * sum;
+      chosen = std::min(std::uint32_t(std::upper_bound(sums.begin(), sums.end(), at) - sums.begin()),
+                        std::uint32_t(kPatchSamples - 1));
+      value = unshadowed_faces(patch, receiver);
+    } else {
+      value = float(kPatchSamples) * unshadowed_sample(patch, patch.samples[chosen], receiver);
+    }
+    const EmissivePatch::Sample& sample = patch.samples[chosen];
     if (!(strongest_channel(value) > 0.0f)) return glm::vec3(0.0f);
     ++rays_cast;
     return reaches(rays_, origin, sample.position_m, ray_offset_m(sample.position_m)) ? value : glm::vec3(0.0f);

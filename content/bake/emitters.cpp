@@ -17,6 +17,9 @@ namespace {
 constexpr float kPatchTriangle_m2 = 0.6f;
 constexpr float kPatchCell_m = 1.0f;    // a longer emissive object (a chain of lights) is several patches
 constexpr std::size_t kMaxPatches = 64;  // the strongest; the others are gathered
+constexpr std::size_t kMostFaces = 4;    // of a patch that is taken for what it is
+constexpr std::uint32_t kEvennessPlaces = 16;
+constexpr float kEven = 1.05f;           // the brightest place over the darkest
 constexpr float kBlocked_m = 0.02f;      // a side that meets something this soon sends its light nowhere
 constexpr int kOpennessRays = 16;
 constexpr int kLeastOpenRays = 8;        // fewer: the inside of a bulb or shade, whose light hardly leaves it
@@ -60,6 +63,31 @@ bool side_is_open(const RayScene& rays, glm::vec3 position, glm::vec3 normal, co
   return open >= kLeastOpenRays;
 }
 
+// Nothing where there are many, or some shine unevenly.
+std::vector<EmissivePatch::Face> make_faces(const Scene& scene, const RayScene& rays,
+                                            const std::vector<EmissiveTriangle>& triangles,
+                                            const std::vector<bool>& own) {
+  std::vector<EmissivePatch::Face> faces;
+  if (triangles.size() > kMostFaces) return faces;
+  for (const EmissiveTriangle& t : triangles) {
+    const TriangleCorners c = corners(scene, t.triangle);
+    EmissivePatch::Face& face = faces.emplace_back();
+    face.corners_m = {c.a, c.b, c.c};
+    face.normal = glm::normalize(c.cross());
+    float least = 1e30f, most = 0.0f;
+    for (std::uint32_t k = 0; k < kEvennessPlaces; ++k) {
+      const glm::vec3 radiance = emission_at(scene, t.triangle, triangle_point(r2_sequence(k)), 0.01f);
+      face.radiance += radiance / static_cast<float>(kEvennessPlaces);
+      least = std::min(least, luminance(radiance));
+      most = std::max(most, luminance(radiance));
+    }
+    if (most > kEven * least) return {};
+    face.front_open = side_is_open(rays, c.centroid(), face.normal, own);
+    face.back_open = side_is_open(rays, c.centroid(), -face.normal, own);
+  }
+  return faces;
+}
+
 EmissivePatch make_patch(const Scene& scene, const RayScene& rays, const std::vector<EmissiveTriangle>& triangles) {
   EmissivePatch patch;
   float area_m2 = 0.0f, power = 0.0f;
@@ -101,6 +129,7 @@ EmissivePatch make_patch(const Scene& scene, const RayScene& rays, const std::ve
     sum += sample.weight;
   }
   patch.power_cd = luminance(sum);
+  patch.faces = make_faces(scene, rays, triangles, own);
   return patch;
 }
 
@@ -199,6 +228,11 @@ std::vector<std::uint64_t> emitter_hashes(const Emitters& emitters) {
       for (glm::vec3 v : {sample.position_m, sample.normal, sample.weight}) add(v);
       values.push_back(sample.front_open ? 1.0f : 0.0f);
       values.push_back(sample.back_open ? 1.0f : 0.0f);
+    }
+    for (const EmissivePatch::Face& face : patch.faces) {
+      for (glm::vec3 v : {face.corners_m[0], face.corners_m[1], face.corners_m[2], face.radiance}) add(v);
+      values.push_back(face.front_open ? 1.0f : 0.0f);
+      values.push_back(face.back_open ? 1.0f : 0.0f);
     }
     finish();
   }

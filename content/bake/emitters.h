@@ -24,6 +24,14 @@ struct EmissivePatch {
     bool back_open = true;
   };
   std::array<Sample, kPatchSamples> samples;  // any first k of them spread well over the patch
+  // What it consists of, where that is little and shines evenly: near by, points do not stand for it well.
+  struct Face {
+    std::array<glm::vec3, 3> corners_m;
+    glm::vec3 normal{0.0f};
+    glm::vec3 radiance{0.0f};
+    bool front_open = true, back_open = true;
+  };
+  std::vector<Face> faces;  // empty = not known
   glm::vec3 centre_m{0.0f};
   float radius_m = 0.0f;
   float sample_area_m2 = 0.0f;

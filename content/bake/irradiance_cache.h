@@ -15,9 +15,9 @@ namespace probewalk {
 class IrradianceCache {
  public:
   // The points must outlive the cache. kept: values() of an earlier, equal cache; used when they are as many as there
-  // are points. Throws Interrupted when progress is cancelled.
+  // are points. dark_lux: places with less light may be as noisy as with this much. Throws Interrupted when progress is cancelled.
   IrradianceCache(const Scene& scene, const RayScene& rays, const CachePoints& points, const DirectLight& direct,
-                  const LightOptions& options, Progress& progress, std::vector<CachedLight> kept);
+                  const LightOptions& options, float dark_lux, Progress& progress, std::vector<CachedLight> kept);
 
   // Irradiance (lux) from everything that DirectLight does not count: sky, large emitters, reflected light.
   glm::vec3 indirect(glm::vec3 position_m, glm::vec3 normal) const {
@@ -27,7 +27,6 @@ class IrradianceCache {
   std::uint64_t rays_cast() const { return rays_cast_; }
 
  private:
-  struct Gather;
   const CachePoints& points_;
   std::vector<CachedLight> indirect_;
   std::uint64_t rays_cast_ = 0;

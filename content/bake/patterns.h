@@ -27,6 +27,11 @@ inline glm::vec2 hammersley(std::uint32_t index, std::uint32_t count) {
           static_cast<float>(bits >> 8) * (1.0f / 16777216.0f)};
 }
 
+// The golden-ratio sequence in [0, 1), moved by a shift that depends on the word.
+inline float golden_sequence(std::uint32_t index, std::uint32_t word) {
+  return static_cast<float>((index * 0x9E3779B9u + word) >> 8) * (1.0f / 16777216.0f);
+}
+
 // A well-mixed word from an index and a seed (the finaliser of MurmurHash3).
 inline std::uint32_t mix_bits(std::uint32_t index, std::uint32_t seed) {
   std::uint32_t h = index * 0x9E3779B9u ^ (seed * 0x85EBCA6Bu + 0x27D4EB2Fu);

@@ -33,6 +33,8 @@ constexpr float kLeastWay_m = 0.02f;        // a single ray that meets a rug's e
 constexpr float kFarWays = 8.0f;            // what is so much further than the free way asked about hardly shortens it
 constexpr std::uint32_t kTriedAround = 48;  // places round a point whose free way is short
 constexpr float kAround = 2.4f;             // spacings away, at most
+constexpr float kRound = 2.0f;              // the same round points where light changes
+constexpr std::uint32_t kTriedRound = 32;
 constexpr float kOver = 0.25f;              // spacings over the surface: from there the next place is looked for
 constexpr std::size_t kFewPoints = 20000;   // closer ones may be had by any scene, however small
 constexpr float kSeen_m = 0.3f;             // from where people look
@@ -192,6 +194,28 @@ class Scatter {
     return true;
   }
 
+  // Round given points of twice the spacing; others are in the way alone.
+  std::vector<CachePoints::Point> fill(const CachePoints& given, std::span<const std::uint32_t> round, float spacing_m,
+                                       std::size_t most) {
+    NearPoints near(spacing_m);
+    for (std::uint32_t k = 0; k < given.size(); ++k) add(near, given[k], given[k].spacing_m);
+    const std::size_t first = points_.size();
+    progress_.begin("light cache points", round.size(), "points");
+    for (std::size_t k = 0; k < round.size() && points_.size() < first + most; ++k) {
+      if (k % 256 == 0) stop_when_cancelled();
+      progress_.advance(1);
+      const CachePoints::Point parent = points_[round[k]];
+      const Surroundings around(rays_, parent, kOver * spacing_m);
+      for (std::uint32_t tried = 0; tried < kTriedRound && points_.size() < first + most; ++tried) {
+        const SurfaceHit hit = around.find(tried, kRound * spacing_m);
+        if (!hit.hit) continue;
+        const SurfacePoint surface = surface_at(scene_, hit, -parent.geometric_normal, spacing_m);
+        if (!is_taken(near, surface, spacing_m)) add(near, surface, spacing_m);
+      }
+    }
+    return {points_.begin() + std::ptrdiff_t(first), points_.end()};
+  }
+
   void keep(std::size_t count) {
     points_.resize(count);
     free_ways_.resize(std::min(free_ways_.size(), count));
@@ -205,7 +229,8 @@ class Scatter {
     if (progress_.cancelled()) throw Interrupted("interrupted while lighting; nothing of it is kept");
   }
 
-  void add(NearPoints& near, const SurfacePoint& surface, float spacing_m) {
+  template <typename Surface>
+  void add(NearPoints& near, const Surface& surface, float spacing_m) {
     near.add(surface.position_m, static_cast<std::uint32_t>(points_.size()));
     points_.push_back({surface.position_m, surface.normal, surface.geometric_normal, spacing_m, {}});
   }
@@ -311,6 +336,12 @@ ScatteredPoints scatter_points(const Scene& scene, const RayScene& rays, double 
   result.points = scatter.take();
   result.rays_cast = scatter.rays_cast();
   return result;
+}
+
+std::vector<CachePoints::Point> scatter_round(const Scene& scene, const RayScene& rays, const CachePoints& points,
+                                              std::span<const std::uint32_t> round, float spacing_m, std::size_t most,
+                                              Progress& progress) {
+  return Scatter(scene, rays, progress).fill(points, round, spacing_m, most);
 }
 
 }  // namespace probewalk

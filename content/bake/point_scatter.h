@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "content/bake/cache_points.h"
@@ -25,5 +26,11 @@ struct ScatteredPoints {
 // Deterministic. Throws Interrupted.
 ScatteredPoints scatter_points(const Scene& scene, const RayScene& rays, double spacing_m, std::size_t max_points,
                                Progress& progress);
+
+// Points spacing_m apart round some of the points, in the order of `round`, as far as those are apart; at most `most`.
+// Their nearness is not filled in. Deterministic. Throws Interrupted.
+std::vector<CachePoints::Point> scatter_round(const Scene& scene, const RayScene& rays, const CachePoints& points,
+                                              std::span<const std::uint32_t> round, float spacing_m, std::size_t most,
+                                              Progress& progress);
 
 }  // namespace probewalk

@@ -20,6 +20,9 @@ constexpr int kMaxLayers = 64;              // surfaces followed up one column
 constexpr float kMinRoomHeight_m = 1.9f;
 constexpr float kMaxRoomHeight_m = 12.0f;
 constexpr float kUnderCeiling_m = 0.05f;
+// Then the panel is raised to the ceiling, as near as it gets: what shone into a gap would be caught there, or come out
+// round the edges.
+constexpr float kGap_m = 0.001f;
 constexpr float kMaxSide_m = 1.0f;
 constexpr float kMinSide_m = 0.45f;
 constexpr float kFlatness_m = 0.3f;         // how much higher the ceiling may be at a panel's corners
@@ -104,14 +107,17 @@ bool enclosed(const RayScene& rays, glm::vec3 eye) {
   return static_cast<float>(front) >= kSeenShare * static_cast<float>(directions.size());
 }
 
-// Whether the ceiling goes on over all four corners.
-bool under_ceiling(const RayScene& rays, const Panel& panel) {
+// How far the ceiling is over the panel; nothing where it does not go on over all four corners.
+std::optional<float> way_to_ceiling_m(const RayScene& rays, const Panel& panel) {
   const float half = 0.5f * panel.side_m;
+  float way_m = kUnderCeiling_m;
   for (const glm::vec2 corner : {glm::vec2(-half, -half), {half, -half}, {half, half}, {-half, half}}) {
     const glm::vec3 from = panel.center_m + glm::vec3(corner.x, 0.0f, corner.y);
-    if (!rays.occluded(from, {0, 1, 0}, 0.0f, kUnderCeiling_m + kFlatness_m)) return false;
+    const SurfaceHit ceiling = rays.closest(from, {0, 1, 0}, 0.0f, kUnderCeiling_m + kFlatness_m);
+    if (!ceiling.hit) return std::nullopt;
+    way_m = std::min(way_m, ceiling.t);
   }
-  return true;
+  return way_m;
 }
 
 // The panel that fits under a ceiling at this point, if any.
@@ -127,7 +133,10 @@ std::optional<Panel> fit_panel(const RayScene& rays, glm::vec3 floor, float heig
   panel.clearance_m = *std::min_element(free_m.begin(), free_m.end());
   const float ceiling_m2 = (free_m[0] + free_m[4]) * (free_m[2] + free_m[6]);
   panel.side_m = std::min({kMaxSide_m, std::sqrt(kCeilingShare * ceiling_m2), 1.2f * panel.clearance_m});
-  if (panel.side_m < kMinSide_m || !under_ceiling(rays, panel)) return std::nullopt;
+  if (panel.side_m < kMinSide_m) return std::nullopt;
+  const std::optional<float> way_m = way_to_ceiling_m(rays, panel);
+  if (!way_m) return std::nullopt;
+  panel.center_m.y += std::max(*way_m - kGap_m, 0.0f);
   return panel;
 }
 

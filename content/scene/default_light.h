@@ -15,7 +15,7 @@ inline constexpr float kDefaultPanel_cd_m2 = 3000.0f;
 // Whether the scene is lit as it is, and by what (one sentence), "" when it is not.
 std::string own_light(const Scene& scene);
 
-// Sets the sky and adds panels (material, triangles) 5 cm under ceilings, about 1 m x 1 m or 15 % of the ceiling, one
+// Sets the sky and adds panels (material, triangles) close under ceilings, about 1 m x 1 m or 15 % of the ceiling, one
 // for each place that no other panel nearby sees. `scene` is in metres, its bounds set. Returns the light_statement.
 std::string add_default_light(Scene& scene);
 

@@ -1,0 +1,156 @@
+#include "content/bake/light_gather.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "content/bake/patterns.h"
+#include "content/bake/surface_point.h"
+#include "content/error.h"
+
+namespace probewalk {
+namespace {
+
+constexpr int kRaysPerPick = 8;   // over the hemisphere, to one to an emitter
+constexpr int kFirstBatches = 4;  // that tell a first noise
+constexpr int kMostBatches = 4;   // times as many, where noise wants them
+
+}  // namespace
+
+PointSets::PointSets(std::size_t count) : parents_(count) {
+  for (std::size_t k = 0; k < count; ++k) parents_[k].store(std::uint32_t(k), std::memory_order_relaxed);
+}
+
+std::uint32_t PointSets::first_of(std::uint32_t point) {
+  for (;;) {
+    std::uint32_t parent = parents_[point].load(std::memory_order_relaxed);
+    if (parent == point) return point;
+    const std::uint32_t above = parents_[parent].load(std::memory_order_relaxed);
+    parents_[point].compare_exchange_weak(parent, above, std::memory_order_relaxed);  // halves the way
+    point = above;
+  }
+}
+
+void PointSets::join(std::uint32_t a, std::uint32_t b) {
+  for (;;) {
+    a = first_of(a);
+    b = first_of(b);
+    if (a == b) return;
+    if (a < b) std::swap(a, b);
+    std::uint32_t expected = a;
+    if (parents_[a].compare_exchange_weak(expected, b, std::memory_order_relaxed)) return;
+  }
+}
+
+template <typename Work>
+void LightGather::for_each_point(std::size_t first, Work&& work) {
+  tbb::parallel_for(first, points_.size(), [&](std::size_t k) {
+    if (progress_.cancelled()) return;
+    work(k);
+    if (++done_ % 1024 == 0) progress_.advance(1024);
+  });
+  if (progress_.cancelled()) throw Interrupted("interrupted while lighting; nothing of it is kept");
+}
+
+void LightGather::reflected(const Values* source, int samples, std::uint32_t pass, Values& values, Values* emitted,
+                            PointSets* sets, std::size_t first) {
+  values.resize(points_.size());
+  if (emitted) emitted->resize(points_.size());
+  for_each_point(first, [&](std::size_t k) {
+    Batch batch;
+    gather_batch(k, source, samples, mix_place(points_[k].position_m, seed_ + pass), emitted != nullptr, sets, batch);
+    values[k] = batch.reflected;
+    if (emitted) (*emitted)[k] = batch.emitted;
+  });
+}
+
+void LightGather::first(int samples, std::uint32_t pass, float noise, float dark_lux, Values& reflected,
+                        Values& emitted) {
+  reflected.resize(points_.size());
+  emitted.resize(points_.size());
+  const int each = std::max(samples / kFirstBatches, 1);
+  for_each_point(0, [&](std::size_t k) {
+    const std::uint32_t turn = mix_place(points_[k].position_m, seed_ + pass);
+    Batch sum;
+    float squares = 0.0f;  // of the brightness of each batch
+    int batches = 0;
+    for (; batches < kFirstBatches * kMostBatches; ++batches) {
+      if (batches >= kFirstBatches) {
+        const float n = static_cast<float>(batches), mean = sum.brightness() / n;
+        const float variance = std::max(squares / n - mean * mean, 0.0f) / (n - 1.0f);
+        if (std::sqrt(variance) <= noise * std::max(mean, dark_lux)) break;
+      }
+      Batch batch;
+      gather_batch(k, nullptr, each, mix_bits(std::uint32_t(batches), turn), true, nullptr, batch);
+      sum.reflected += batch.reflected;
+      sum.emitted += batch.emitted;
+      squares += batch.brightness() * batch.brightness();
+    }
+    reflected[k] = sum.reflected * (1.0f / static_cast<float>(batches));
+    emitted[k] = sum.emitted * (1.0f / static_cast<float>(batches));
+  });
+}
+
+LightGather::Values LightGather::smooth(const Values& values) const {
+  Values smoothed(points_.size());
+  tbb::parallel_for(std::size_t(0), points_.size(),
+                    [&](std::size_t k) { smoothed[k] = points_.mean_around(values, k); });
+  return smoothed;
+}
+
+void LightGather::gather_batch(std::size_t k, const Values* source, int samples, std::uint32_t turn, bool with_emitted,
+                               PointSets* sets, Batch& batch) {
+  const CachePoints::Point& point = points_[k];
+  glm::vec3 tangent, bitangent;
+  tangent_frame(point.normal, tangent, bitangent);
+  const glm::vec3 origin = point.position_m + point.geometric_normal * ray_offset_m(point.position_m);
+  const float spread_rad = std::sqrt(std::numbers::pi_v<float> / static_cast<float>(samples));
+  const int picks = with_emitted && !emitters_.empty() ? std::max(samples / kRaysPerPick, 1) : 0;
+  // The balance heuristic's share of light that a ray of the hemisphere, or a pick, found in a direction.
+  const auto share = [&](glm::vec3 direction, float pick_density) {
+    const float by_rays =
+        static_cast<float>(samples) * std::max(glm::dot(direction, point.normal), 0.0f) * std::numbers::inv_pi_v<float>;
+    return by_rays > 0.0f ? by_rays / (by_rays + static_cast<float>(picks) * pick_density) : 0.0f;
+  };
+  CachedLight sum, own;
+  std::uint64_t cast = static_cast<std::uint64_t>(samples);
+  for (int s = 0; s < samples; ++s) {
+    const glm::vec3 local = cosine_direction(rotate_pattern(hammersley(s, samples), turn));
+    const glm::vec3 direction = tangent * local.x + bitangent * local.y + point.normal * local.z;
+    if (glm::dot(direction, point.geometric_normal) <= 0.0f) continue;
+    const SurfaceHit hit = rays_.closest(origin, direction);
+    if (!hit.hit) {
+      if (with_emitted) own.add(scene_.sky.radiance(direction), direction, point.normal);
+      continue;
+    }
+    const SurfacePoint surface = surface_at(scene_, hit, direction, hit.t * spread_rad);
+    if (surface.unlit) continue;
+    if (with_emitted && !direct_.emitters().is_patch[hit.triangle]) {
+      own.add(surface.emission_cd_m2 * share(direction, emitters_.density(hit, direction)), direction, point.normal);
+    }
+    const glm::vec3 lux = source ? points_.interpolate_seen(*source, surface.position_m, surface.normal, rays_)
+                                 : direct_.irradiance_by_one(surface.position_m, surface.geometric_normal,
+                                                             surface.normal, golden_sequence(std::uint32_t(s), turn),
+                                                             mix_bits(std::uint32_t(s), turn), cast);
+    sum.add(surface.albedo * lux, direction, point.normal);
+    if (!sets) continue;
+    points_.for_each_seen(surface.position_m, surface.normal,
+                          [&](std::uint32_t p) { sets->join(std::uint32_t(k), p); });
+  }
+  for (int s = 0; s < picks; ++s) {
+    const GatheredEmitters::Sample sample =
+        emitters_.pick(origin, point.normal, golden_sequence(std::uint32_t(s), ~turn),
+                       rotate_pattern(r2_sequence(std::uint32_t(s)), mix_bits(turn, 1)), cast);
+    if (!(glm::dot(sample.direction, point.geometric_normal) > 0.0f)) continue;
+    own.add(sample.radiance * share(sample.direction, sample.density), sample.direction, point.normal);
+  }
+  rays_cast_ += cast;
+  // Cosine-distributed: irradiance = pi * mean radiance; reflected radiance = albedo / pi * irradiance.
+  batch.reflected = sum * (1.0f / static_cast<float>(samples));
+  batch.emitted = own * (std::numbers::pi_v<float> / static_cast<float>(samples));
+}
+
+}  // namespace probewalk

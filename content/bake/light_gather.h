@@ -1,0 +1,84 @@
+// Gathers light at cache points over the hemisphere: what sky and surfaces send by themselves, what surfaces reflect of
+// direct light, and of what the cache already knows.
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "content/bake/cache_points.h"
+#include "content/bake/cached_light.h"
+#include "content/bake/direct_light.h"
+#include "content/bake/gathered_emitters.h"
+#include "content/progress.h"
+#include "content/scene/ray_scene.h"
+#include "content/scene/scene.h"
+
+namespace probewalk {
+
+// Points that light passes between, by the least of each set, whatever the order in which threads join them.
+class PointSets {
+ public:
+  explicit PointSets(std::size_t count);
+  std::uint32_t first_of(std::uint32_t point);
+  void join(std::uint32_t a, std::uint32_t b);
+
+ private:
+  std::vector<std::atomic<std::uint32_t>> parents_;
+};
+
+class LightGather {
+ public:
+  using Values = std::vector<CachedLight>;  // one a point
+
+  // All must outlive this.
+  LightGather(const Scene& scene, const RayScene& rays, const DirectLight& direct, const CachePoints& points,
+              std::uint32_t seed, Progress& progress)
+      : scene_(scene),
+        rays_(rays),
+        direct_(direct),
+        points_(points),
+        emitters_(scene, rays, direct.emitters()),
+        seed_(seed),
+        progress_(progress) {}
+
+  // What `source`, reflected once, sends to the points, by so many rays each; null = direct light, found where the rays
+  // hit: near a lamp or at the edge of its shadow no cache would do. emitted receives what sky and surfaces send by
+  // themselves, as far as it is not sampled directly; in sets points are joined that light passes between. Both may be
+  // null. pass: chooses other directions. Of the points from `first` on; what is filled is resized to all. Throws
+  // Interrupted.
+  void reflected(const Values* source, int samples, std::uint32_t pass, Values& values, Values* emitted,
+                 PointSets* sets, std::size_t first = 0);
+  // Direct light, reflected once, and what is emitted, with up to four times the samples, until the standard error is
+  // less than this share of the light (of dark_lux, where there is less).
+  void first(int samples, std::uint32_t pass, float noise, float dark_lux, Values& reflected, Values& emitted);
+  // Each point the mean of its open neighbourhood: what few rays found (a patch of sun) must not show as a blotch.
+  Values smooth(const Values& values) const;
+
+  std::uint64_t rays_cast() const { return rays_cast_; }
+
+ private:
+  template <typename Work>
+  void for_each_point(std::size_t first, Work&& work);
+  struct Batch {
+    CachedLight reflected, emitted;
+    float brightness() const {
+      const glm::vec3 lux = reflected.lux + emitted.lux;
+      return glm::max(lux.r, glm::max(lux.g, lux.b));
+    }
+  };
+  void gather_batch(std::size_t k, const Values* source, int samples, std::uint32_t turn, bool with_emitted,
+                    PointSets* sets, Batch& batch);
+
+  const Scene& scene_;
+  const RayScene& rays_;
+  const DirectLight& direct_;
+  const CachePoints& points_;
+  const GatheredEmitters emitters_;
+  const std::uint32_t seed_;
+  Progress& progress_;
+  std::atomic<std::uint64_t> done_{0}, rays_cast_{0};
+};
+
+}  // namespace probewalk

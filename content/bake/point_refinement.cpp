@@ -1,0 +1,130 @@
+#include "content/bake/point_refinement.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "content/bake/light_gather.h"
+#include "content/bake/point_scatter.h"
+
+namespace probewalk {
+namespace {
+
+using Values = LightGather::Values;
+
+constexpr int kHalvings = 3;  // of the spacing, as narrow places have
+// Light is only guessed here: as much as tells where it changes.
+constexpr int kFirstRays = 96, kSecondRays = 48;
+constexpr std::uint32_t kFirstPass = 101, kSecondPass = 102;
+// Neighbours may be off by this share of the light at a point. They stand a spacing off; what lies between points is
+// about half as far from the next, and its error about a third.
+constexpr float kTolerance = 0.2f;
+constexpr float kDark = 0.1f;              // of the mean light: places that are darker count as this light
+constexpr std::size_t kFewPoints = 20000;  // may be added to any scene, however small
+constexpr double kToldShare = 0.95;
+
+float brightest(glm::vec3 rgb) {
+  return std::max(rgb.r, std::max(rgb.g, rgb.b));
+}
+
+// A power of four: a lamp more or less elsewhere must not move points everywhere.
+float coarse_scale(double mean) {
+  return mean > 0.0 ? static_cast<float>(std::exp2(2.0 * std::floor(0.5 * std::log2(mean)))) : 0.0f;
+}
+
+class Refinement {
+ public:
+  Refinement(const Scene& scene, const RayScene& rays, const DirectLight& direct, std::uint32_t seed,
+             CachePoints& points, Progress& progress)
+      : points_(points), progress_(progress), gather_(scene, rays, direct, points, seed, progress) {
+    guess(0);
+    double sum = 0.0;
+    for (const CachedLight& cached : cached_) sum += brightest(cached.lux);
+    dark_lux_ = kDark * coarse_scale(sum / std::max<double>(1.0, double(points_.size())));
+  }
+
+  // Light at the points from `first` on.
+  void guess(std::size_t first) {
+    progress_.begin("light cache points", 2 * (points_.size() - first), "points");
+    gather_.reflected(nullptr, kFirstRays, kFirstPass, once_, &emitted_, nullptr, first);
+    source_.resize(points_.size());
+    for (std::size_t k = first; k < points_.size(); ++k) {
+      source_[k] = once_[k];
+      source_[k] += emitted_[k];
+    }
+    gather_.reflected(&source_, kSecondRays, kSecondPass, twice_, nullptr, nullptr, first);
+    cached_.resize(points_.size());
+    for (std::size_t k = first; k < points_.size(); ++k) {
+      cached_[k] = source_[k];
+      cached_[k] += twice_[k];
+    }
+  }
+
+  // How far the neighbours of each point are off; 0 where it has none.
+  void measure() {
+    errors_.assign(points_.size(), 0.0f);
+    tbb::parallel_for(std::size_t(0), points_.size(), [&](std::size_t k) {
+      const std::optional<glm::vec3> by_others = points_.by_others(cached_, k);
+      if (!by_others) return;
+      const float off = brightest(glm::abs(*by_others - cached_[k].lux)), all = brightest(cached_[k].lux);
+      errors_[k] = off > 0.0f ? off / std::max(all, dark_lux_) : 0.0f;
+    });
+  }
+  double told_error() const {
+    std::vector<float> sorted = errors_;
+    if (sorted.empty()) return 0.0;
+    const auto at = sorted.begin() + std::ptrdiff_t(kToldShare * double(sorted.size() - 1));
+    std::nth_element(sorted.begin(), at, sorted.end());
+    return *at;
+  }
+  // The points of this spacing that are off by too much, the worst first.
+  std::vector<std::uint32_t> off_points(float spacing_m) const {
+    std::vector<std::uint32_t> off;
+    for (std::uint32_t k = 0; k < points_.size(); ++k) {
+      if (errors_[k] > kTolerance && std::abs(points_[k].spacing_m - spacing_m) < 0.01f * spacing_m) off.push_back(k);
+    }
+    std::stable_sort(off.begin(), off.end(), [&](std::uint32_t a, std::uint32_t b) { return errors_[a] > errors_[b]; });
+    return off;
+  }
+  float dark_lux() const { return dark_lux_; }
+  std::uint64_t rays_cast() const { return gather_.rays_cast(); }
+
+ private:
+  CachePoints& points_;
+  Progress& progress_;
+  LightGather gather_;
+  Values emitted_, once_, source_, twice_, cached_;
+  std::vector<float> errors_;
+  float dark_lux_ = 0.0f;
+};
+
+}  // namespace
+
+LightRefinement refine_points(const Scene& scene, const RayScene& rays, const DirectLight& direct, std::uint32_t seed,
+                              CachePoints& points, Progress& progress) {
+  LightRefinement result;
+  const std::size_t before = points.size(), most = std::max(before / 2, std::min(2 * before, kFewPoints));
+  Refinement refinement(scene, rays, direct, seed, points, progress);
+  refinement.measure();
+  result.error_before = result.error_after = refinement.told_error();
+  for (int halving = 1; halving <= kHalvings && points.size() < before + most; ++halving) {
+    const float spacing_m = std::ldexp(points.spacing_m(), -halving);
+    const std::vector<std::uint32_t> off = refinement.off_points(2.0f * spacing_m);
+    const std::size_t first = points.size();
+    std::vector<CachePoints::Point> closer =
+        scatter_round(scene, rays, points, off, spacing_m, before + most - first, progress);
+    if (closer.empty()) continue;  // points of the next spacing may be there for other reasons
+    points.add(std::move(closer), rays, progress);
+    refinement.guess(first);
+    refinement.measure();
+    result.error_after = refinement.told_error();
+  }
+  result.added = points.size() - before;
+  result.rays_cast = refinement.rays_cast();
+  result.dark_lux = refinement.dark_lux();
+  return result;
+}
+
+}  // namespace probewalk
