@@ -256,9 +256,28 @@ class BakeJob {
       room.probe_count = static_cast<std::uint32_t>(manifest_.probe_positions_m.size()) - room.first_probe;
       manifest_.rooms.push_back(std::move(room));
     }
+    name_rooms_without_probes();
     manifest_.grid = std::move(placement.grid);
     manifest_.portals = std::move(space_.portals);
     manifest_.floor = std::move(space_.floor);
+  }
+
+  // A plan may leave a room to its neighbours' probes; it is only short of probes when it used all.
+  void name_rooms_without_probes() {
+    const auto most = options_.target.asked() ? options_.target.most_probes : std::size_t(options_.placement.max_probes);
+    if (options_.target.asked() && manifest_.probe_positions_m.size() < most) return;
+    std::vector<bool> has_floor(manifest_.rooms.size(), false);
+    for (const FloorNode& node : space_.floor.nodes) has_floor[node.room] = true;
+    std::vector<std::string> without;
+    for (std::size_t k = 0; k < manifest_.rooms.size(); ++k) {
+      if (has_floor[k] && manifest_.rooms[k].probe_count == 0) without.push_back(manifest_.rooms[k].id);
+    }
+    if (without.empty()) return;
+    const std::string warning = fmt::format(
+        "{} of {} rooms with floor have no probe and are seen by their neighbours' alone: {}; raise --max-probes {}",
+        without.size(), std::count(has_floor.begin(), has_floor.end(), true), fmt::join(without, ", "), most);
+    progress_.note("warning: " + warning);
+    manifest_.warnings.push_back(warning);
   }
 
   std::vector<LevelSize> levels_of(std::size_t room) const {

@@ -133,6 +133,42 @@ TEST(Placement, IsWidenedUntilTheNumberFits) {
   }
 }
 
+// A hall and four closets behind doors along its side, which coarse lines miss.
+BoxScene hall_with_closets() {
+  BoxScene boxes;
+  boxes.room({0, 0, 0}, {8, 2.5f, 5.2f});
+  boxes.wall_with_door(0, 8, 4, 2.5f, 0.6f, 1.5f);
+  boxes.authored_room("hall", {0, 0, 0}, {8, 2.5, 4});
+  boxes.authored_room("closet-0", {0, 0, 4}, {2, 2.5, 5.2});
+  boxes.authored_room("closet-1", {2, 0, 4}, {4, 2.5, 5.2});
+  boxes.authored_room("closet-2", {4, 0, 4}, {6, 2.5, 5.2});
+  boxes.authored_room("closet-3", {6, 0, 4}, {8, 2.5, 5.2});
+  return boxes;
+}
+
+TEST(Placement, EveryRoomHasAProbeBeforeAnyHasTwoToSpare) {
+  const BoxScene boxes = hall_with_closets();
+  for (const int most : {4, 5, 6, 8, 12}) {
+    PlacementOptions options;
+    options.max_probes = most;
+    const Placed placed = place(boxes.scene, options);
+    expect_sound(boxes.scene, placed, most);
+    std::vector<int> probes(placed.space.rooms.size(), 0);
+    ASSERT_EQ(probes.size(), 5u);
+    for (const ProbeSite& site : placed.placement.sites) ++probes[std::size_t(site.room)];
+    // A probe stands for a vertex, so that the widest grids have too few.
+    const auto with = std::size_t(std::count_if(probes.begin(), probes.end(), [](int count) { return count > 0; }));
+    EXPECT_EQ(with, std::min(probes.size(), placed.placement.grid.probe.size())) << "with at most " << most;
+    if (most >= 8) {
+      EXPECT_EQ(with, probes.size()) << "with at most " << most;
+    }
+    // And the grid's vertices know all of them.
+    std::vector<bool> known(placed.placement.sites.size(), false);
+    for (const std::uint32_t site : placed.placement.grid.probe) known[site] = true;
+    EXPECT_EQ(std::count(known.begin(), known.end(), false), 0) << "at most " << most;
+  }
+}
+
 TEST(Placement, WithoutFloorThereIsAtLeastOneProbe) {
   BoxScene boxes;
   boxes.solid({-0.3f, 0, -0.3f}, {0.3f, 0.5f, 0.3f});

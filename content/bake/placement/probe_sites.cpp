@@ -46,6 +46,7 @@ class SiteChooser {
     for (const glm::ivec3& vertex : vertices_) stand(vertex);
     for (const glm::ivec3& vertex : vertices_) stand_better(vertex);
     stand_in_doorways();
+    give_every_room_one();
     if (sites_.empty()) add_site(space_.start.position_m, vertices_.size());
     share(counts);
     add_where_few_see(counts);
@@ -191,6 +192,91 @@ class SiteChooser {
       const bool better = fits(middle) && need_met(middle, audience) >= 0.8 * need_met(before, audience);
       move_site(site, better ? middle : before);
     }
+  }
+
+  // Few lines of a grid may miss whole rooms. One with floor gets the probe of a vertex around its heads from a room that
+  // has several, or another, before any room has two that it does without.
+  void give_every_room_one() {
+    std::vector<bool> has_floor(space_.rooms.size(), false);
+    for (const FloorNode& node : space_.floor.nodes) has_floor[node.room] = true;
+    for (std::size_t room = 0; room < has_floor.size(); ++room) {
+      if (!has_floor[room] || sites_in(int(room)) > 0) continue;
+      if (const auto place = best_place_in(int(room))) give_one(*place);
+    }
+  }
+  std::size_t sites_in(int room) const {
+    return std::size_t(
+        std::count_if(sites_.begin(), sites_.end(), [&](const ProbeSite& site) { return site.room == room; }));
+  }
+  // Where most of the room's heads are seen from.
+  std::optional<glm::dvec3> best_place_in(int room) const {
+    constexpr std::size_t kPlaces = 24;
+    std::vector<glm::dvec3> heads;
+    for (const glm::dvec3& eye : heads_.eyes()) {
+      if (room_of(eye) == room) heads.push_back(eye);
+    }
+    double most = -1.0;
+    std::optional<glm::dvec3> best;
+    const std::size_t stride = heads.size() / kPlaces + 1;
+    for (std::size_t k = 0; k < heads.size(); k += stride) {
+      // Next to one behind a wall is as good as anywhere.
+      if (!heads_.holds(heads[k]) || clearance_m(rays_, heads[k], kRoomy_m) < kClearance_m) continue;
+      double seen = 0.0;
+      for (std::size_t i = 0; i < heads.size(); i += stride) seen += sees(rays_, heads[k], heads[i]);
+      const double worth = seen / double(heads.size()) + 0.1 * clearance_m(rays_, heads[k], kRoomy_m);
+      if (worth <= most) continue;
+      most = worth;
+      best = heads[k];
+    }
+    return best;
+  }
+  std::optional<std::size_t> nearest_open_vertex(glm::dvec3 place) const {
+    std::optional<std::size_t> nearest;
+    double least = HUGE_VAL;
+    for (const glm::ivec3& vertex : vertices_) {
+      const double away = glm::distance(vertex_m(grid_, vertex), place);
+      if (grid_.probe[vertex_index(grid_, vertex)] != kNobody || away >= least) continue;
+      least = away;
+      nearest = vertex_index(grid_, vertex);
+    }
+    return nearest;
+  }
+  // The nearest vertex around the place that nobody serves, or the one whose probe's room has the most others.
+  void give_one(glm::dvec3 place) {
+    std::optional<std::size_t> open;
+    std::uint32_t spare = kNobody;
+    double least = HUGE_VAL;
+    std::size_t most = 1;
+    for (const glm::ivec3& corner : cell_corners(grid_, place)) {
+      const std::size_t v = vertex_index(grid_, corner);
+      const std::uint32_t site = grid_.probe[v];
+      if (site == kNobody) {
+        const double away = glm::distance(vertex_m(grid_, corner), place);
+        if (away < least) open = v;
+        least = std::min(least, away);
+      } else if (sites_in(sites_[site].room) > most) {
+        most = sites_in(sites_[site].room);
+        spare = site;
+      }
+    }
+    if (sites_.size() < max_probes_ && !open) open = nearest_open_vertex(place);
+    if (sites_.size() < max_probes_ && open) {
+      grid_.probe[*open] = add_site(place, *open);
+      return;
+    }
+    if (spare == kNobody) {  // from the room that has the most
+      for (std::uint32_t site = 0; site < sites_.size(); ++site) {
+        if (sites_in(sites_[site].room) <= most) continue;
+        most = sites_in(sites_[site].room);
+        spare = site;
+      }
+      if (spare != kNobody && open) {
+        grid_.probe[owner_[spare]] = kNobody;
+        grid_.probe[*open] = spare;
+        owner_[spare] = *open;
+      }
+    }
+    if (spare != kNobody) move_site(spare, place);
   }
 
   int views(std::uint32_t eye) const {

@@ -143,6 +143,25 @@ std::optional<std::uint32_t> ProbeChoice::best_for(const std::vector<double>& ro
   return std::uint32_t(best - gains.begin());
 }
 
+std::size_t ProbeChoice::chosen_in(std::uint32_t room) const {
+  const std::vector<std::uint32_t>& chosen = coverage_.chosen();
+  return std::size_t(std::count_if(chosen.begin(), chosen.end(),
+                                   [&](std::uint32_t c) { return coverage_.candidates()[c].room == room; }));
+}
+
+std::size_t ProbeChoice::rooms_without() const {
+  std::vector<bool> waits(room_rays_.size(), false);
+  for (const Candidate& candidate : coverage_.candidates()) waits[candidate.room] = has_floor(candidate.room);
+  for (const std::uint32_t c : coverage_.chosen()) waits[coverage_.candidates()[c].room] = false;
+  return std::size_t(std::count(waits.begin(), waits.end(), true));
+}
+
+bool ProbeChoice::leaves_enough(std::uint32_t candidate, std::size_t most) const {
+  const std::uint32_t room = coverage_.candidates()[candidate].room;
+  if (has_floor(room) && chosen_in(room) == 0) return true;
+  return coverage_.chosen().size() + rooms_without() < most;
+}
+
 void ProbeChoice::choose(double unanswered, std::size_t most) {
   const std::size_t rooms = space_.rooms.size();
   // Gains only fall as probes are added: what was worth less than the best now need not be looked at again.
@@ -164,6 +183,7 @@ void ProbeChoice::choose(double unanswered, std::size_t most) {
       weight[room] = coverage_.unanswered()[room] > unanswered ? 1.0 : 0.0;
     const std::uint32_t c = queue.top().second;
     queue.pop();
+    if (!leaves_enough(c, most)) continue;  // nor will it later: probes only get fewer, and its room has one
     const double gain = coverage_.gain(c, weight);
     if (!queue.empty() && gain < queue.top().first) {
       if (gain >= kLeastGain_rays) queue.emplace(gain, c);
@@ -190,8 +210,11 @@ void ProbeChoice::relocate(double unanswered) {
     for (std::size_t room = 0; room < weight.size(); ++room)
       weight[room] = coverage_.unanswered()[room] > 0.5 * unanswered ? 1.0 : 0.0;
     const glm::dvec3 at = coverage_.candidates()[own].position_m;
+    const std::uint32_t room = coverage_.candidates()[own].room;
+    const bool is_only = has_floor(room) && chosen_in(room) == 0;  // which its room keeps
     std::vector<std::uint32_t> near;
     for (std::uint32_t c = 0; c < coverage_.candidates().size(); ++c) {
+      if (is_only && coverage_.candidates()[c].room != room) continue;
       if (std::find(others.begin(), others.end(), c) == others.end() && c != own) near.push_back(c);
     }
     std::stable_sort(near.begin(), near.end(), [&](std::uint32_t a, std::uint32_t b) {

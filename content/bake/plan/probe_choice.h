@@ -20,7 +20,7 @@ class ProbeChoice {
               const ProbeGrid& grid, int map_side, Progress& progress);
 
   // Chooses until no more than this share of each room's rays is unanswered, nothing helps any more, or there are
-  // `most` probes.
+  // `most` probes. When they get scarce every room with floor has one before any gets a second.
   void choose(double unanswered, std::size_t most);
   // Adds the best for a room. Nothing when no candidate answers another of its rays.
   std::optional<std::uint32_t> add_for(std::uint32_t room);
@@ -33,6 +33,11 @@ class ProbeChoice {
   const Coverage& coverage() const { return coverage_; }
 
  private:
+  // Rooms with floor that have no probe yet, and whether one more in this room leaves them theirs of `most`.
+  std::size_t rooms_without() const;
+  bool leaves_enough(std::uint32_t candidate, std::size_t most) const;
+  bool has_floor(std::uint32_t room) const { return room_rays_[room] > 0.0; }
+  std::size_t chosen_in(std::uint32_t room) const;
   void gather_candidates();
   void add_candidates(const std::vector<glm::dvec3>& places_m, int room);
   void gather_by_need(std::uint32_t room);

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -91,6 +92,24 @@ TEST_F(Planner, PaysForALowerErrorWithBytes) {
   EXPECT_LT(coarse.bytes_disk, fine.bytes_disk);
   EXPECT_GT(coarse.planned->held_back.worst(), fine.planned->held_back.worst());
   for (const PlannedRoom& room : fine.planned->rooms) EXPECT_FALSE(room.probes_m.empty()) << room.id;
+}
+
+TEST_F(Planner, GivesEveryRoomAProbeBeforeAnyHasTwo) {
+  BakeOptions few = options("two-rooms", "few", 0.02);
+  few.target.most_geometry = few.target.most_radiance = 32;
+  few.target.most_probes = 2;
+  const BakeReport two = bake_quietly(few);
+  EXPECT_EQ(two.probes, 2u);
+  for (const PlannedRoom& room : two.planned->rooms) EXPECT_EQ(room.probes_m.size(), 1u) << room.id;
+  BakeOptions fewest = few;
+  fewest.pack = folder_ / "fewest.probes";
+  fewest.target.most_probes = 1;
+  bake_quietly(fewest);
+  const std::vector<std::string> warnings = Pack::open(fewest.pack).manifest().warnings;
+  const auto named = std::count_if(warnings.begin(), warnings.end(), [](const std::string& warning) {
+    return warning.find("1 of 2 rooms with floor have no probe") != std::string::npos;
+  });
+  EXPECT_EQ(named, 1);
 }
 
 TEST_F(Planner, KeepsToABudget) {
