@@ -13,7 +13,6 @@ namespace {
 constexpr float kLeastShare = 0.003f;
 constexpr float kMostShare = 0.02f;
 constexpr float kDoubtfulRays = 2.0f;
-constexpr float kDoubtfulVisible = 0.05f;  // guessed, where one ray is to choose among all
 constexpr std::uint32_t kListedSeed = 0x11u, kDoubtfulSeed = 0x12u, kFarSeed = 0x13u;
 
 struct Candidate {
@@ -145,43 +144,6 @@ glm::vec3 DirectLight::irradiance(glm::vec3 position_m, glm::vec3 geometric_norm
     }
   }
   return sum;
-}
-
-glm::vec3 DirectLight::irradiance_by_one(glm::vec3 position_m, glm::vec3 geometric_normal, glm::vec3 normal,
-                                         float choice, std::uint32_t word, std::uint64_t& rays_cast) const {
-  const Receiver receiver{position_m, geometric_normal, normal};
-  const LightGrid::Nearby nearby = grid_.at(position_m, geometric_normal);
-  thread_local std::vector<float> sums;  // of the weights, up to and with each listed one
-  sums.clear();
-  float total = 0.0f;
-  for (const LightGrid::Listed& listed : nearby.listed) {
-    sums.push_back(total += strongest_channel(light_.unshadowed(listed.emitter, receiver)) * listed.visible);
-  }
-  const float doubtful_lux = nearby.doubtful.empty() ? 0.0f : nearby.doubtful.back().sum;
-  const float doubtful_weight = kDoubtfulVisible * doubtful_lux, far_weight = kDoubtfulVisible * nearby.far_lux;
-  const float all = total + doubtful_weight + far_weight;
-  if (!(all > 0.0f)) return glm::vec3(0.0f);
-  float at = choice * all;
-  const auto send = [&](std::uint32_t emitter, float chance) {
-    return light_.irradiance_by_one(emitter, word, receiver, rays_cast) / chance;
-  };
-  if (at < total) {
-    const std::size_t k = std::size_t(std::upper_bound(sums.begin(), sums.end(), at) - sums.begin());
-    const float weight = sums[k] - (k > 0 ? sums[k - 1] : 0.0f);
-    return send(nearby.listed[k].emitter, weight / all);
-  }
-  at -= total;
-  if (at < doubtful_weight) {
-    const auto found = std::upper_bound(nearby.doubtful.begin(), nearby.doubtful.end(), at / kDoubtfulVisible,
-                                        [](float value, const LightGrid::Doubtful& d) { return value < d.sum; });
-    const std::size_t k = std::min(std::size_t(found - nearby.doubtful.begin()), nearby.doubtful.size() - 1);
-    const float lux = nearby.doubtful[k].sum - (k > 0 ? nearby.doubtful[k - 1].sum : 0.0f);
-    return send(nearby.doubtful[k].emitter, kDoubtfulVisible * lux / all);
-  }
-  if (!(far_weight > 0.0f)) return glm::vec3(0.0f);
-  const std::uint32_t emitter = pick_by_power(std::min((at - doubtful_weight) / far_weight, 0.999999f));
-  if (grid_.lists(nearby, emitter)) return glm::vec3(0.0f);
-  return send(emitter, far_weight / all * light_.power(emitter) / power_sums_.back());
 }
 
 }  // namespace probewalk

@@ -30,11 +30,6 @@ class DirectLight {
   glm::vec3 irradiance(glm::vec3 position_m, glm::vec3 geometric_normal, glm::vec3 normal,
                        std::uint64_t& rays_cast) const;
 
-  // The same by a single ray to an emitter and a place of it that `choice` in [0, 1) and the word pick: right on average
-  // over both. For where the light of many places is summed.
-  glm::vec3 irradiance_by_one(glm::vec3 position_m, glm::vec3 geometric_normal, glm::vec3 normal, float choice,
-                              std::uint32_t word, std::uint64_t& rays_cast) const;
-
   const Emitters& emitters() const { return emitters_; }
   const LightGrid& grid() const { return grid_; }
   std::uint64_t rays_cast() const { return grid_.rays_cast(); }  // by the construction

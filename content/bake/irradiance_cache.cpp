@@ -13,7 +13,7 @@ constexpr int kFirstGather = 2;
 int rays_of_bounce(int samples, int bounce) {
   return bounce == 1 ? kFirstGather * samples : bounce == 2 ? samples : std::max(samples / 2, 1);
 }
-constexpr float kNoise = 0.03f;  // standard error of the first bounce, as a share of its light; more rays until then
+constexpr float kNoise = 0.02f;  // standard error of the first bounce, as a share of its light; more rays until then
 constexpr float kMaxTailRatio = 0.95f;
 
 using Values = LightGather::Values;
@@ -41,11 +41,12 @@ IrradianceCache::IrradianceCache(const Scene& scene, const RayScene& rays, const
   }
   LightGather gather(scene, rays, direct, points_, options.seed, progress);
   const int bounces = std::max(options.bounces, 0);
-  progress.begin("light cache", points_.size() * static_cast<std::uint64_t>(1 + std::max(bounces, 0)), "points");
+  progress.begin("light cache", points_.size() * static_cast<std::uint64_t>(2 + std::max(bounces, 0)), "points");
 
   // The series of bounces: each gathers what the one before has added.
-  Values emitted, last;
-  gather.first(rays_of_bounce(options.samples, 1), 1, kNoise, dark_lux, last, emitted);
+  Values direct_values, emitted, last;
+  gather.direct(direct_values);
+  gather.first(direct_values, rays_of_bounce(options.samples, 1), 1, kNoise, dark_lux, last, emitted);
   indirect_ = emitted;
   if (bounces == 0) {
     indirect_ = gather.smooth(indirect_);
@@ -60,7 +61,7 @@ IrradianceCache::IrradianceCache(const Scene& scene, const RayScene& rays, const
     const bool is_last = bounce == bounces + 1;
     if (is_last) before = last;
     Values next;
-    gather.reflected(&last, rays_of_bounce(options.samples, bounce), bounce, next, nullptr, is_last ? &sets : nullptr);
+    gather.reflected(last, rays_of_bounce(options.samples, bounce), bounce, next, nullptr, is_last ? &sets : nullptr);
     last = std::move(next);
     if (!is_last) add(indirect_, last);
   }

@@ -55,7 +55,17 @@ void LightGather::for_each_point(std::size_t first, Work&& work) {
   if (progress_.cancelled()) throw Interrupted("interrupted while lighting; nothing of it is kept");
 }
 
-void LightGather::reflected(const Values* source, int samples, std::uint32_t pass, Values& values, Values* emitted,
+void LightGather::direct(Values& values, std::size_t first) {
+  values.resize(points_.size());
+  for_each_point(first, [&](std::size_t k) {
+    std::uint64_t cast = 0;
+    const CachePoints::Point& p = points_[k];
+    values[k].lux = direct_.irradiance(p.position_m, p.geometric_normal, p.normal, cast);
+    rays_cast_ += cast;
+  });
+}
+
+void LightGather::reflected(const Values& source, int samples, std::uint32_t pass, Values& values, Values* emitted,
                             PointSets* sets, std::size_t first) {
   values.resize(points_.size());
   if (emitted) emitted->resize(points_.size());
@@ -67,28 +77,31 @@ void LightGather::reflected(const Values* source, int samples, std::uint32_t pas
   });
 }
 
-void LightGather::first(int samples, std::uint32_t pass, float noise, float dark_lux, Values& reflected,
-                        Values& emitted) {
+void LightGather::first(const Values& direct, int samples, std::uint32_t pass, float noise, float dark_lux,
+                        Values& reflected, Values& emitted, std::vector<float>* deviations, std::size_t from) {
   reflected.resize(points_.size());
   emitted.resize(points_.size());
+  if (deviations) deviations->resize(points_.size());
   const int each = std::max(samples / kFirstBatches, 1);
-  for_each_point(0, [&](std::size_t k) {
+  for_each_point(from, [&](std::size_t k) {
     const std::uint32_t turn = mix_place(points_[k].position_m, seed_ + pass);
     Batch sum;
     float squares = 0.0f;  // of the brightness of each batch
+    float deviation = 0.0f;
     int batches = 0;
     for (; batches < kFirstBatches * kMostBatches; ++batches) {
       if (batches >= kFirstBatches) {
         const float n = static_cast<float>(batches), mean = sum.brightness() / n;
-        const float variance = std::max(squares / n - mean * mean, 0.0f) / (n - 1.0f);
-        if (std::sqrt(variance) <= noise * std::max(mean, dark_lux)) break;
+        deviation = std::sqrt(std::max(squares / n - mean * mean, 0.0f) / (n - 1.0f));
+        if (deviation <= noise * std::max(mean, dark_lux) || noise == kAnyNoise) break;
       }
       Batch batch;
-      gather_batch(k, nullptr, each, mix_bits(std::uint32_t(batches), turn), true, nullptr, batch);
+      gather_batch(k, direct, each, mix_bits(std::uint32_t(batches), turn), true, nullptr, batch);
       sum.reflected += batch.reflected;
       sum.emitted += batch.emitted;
       squares += batch.brightness() * batch.brightness();
     }
+    if (deviations) (*deviations)[k] = deviation;
     reflected[k] = sum.reflected * (1.0f / static_cast<float>(batches));
     emitted[k] = sum.emitted * (1.0f / static_cast<float>(batches));
   });
@@ -101,7 +114,7 @@ LightGather::Values LightGather::smooth(const Values& values) const {
   return smoothed;
 }
 
-void LightGather::gather_batch(std::size_t k, const Values* source, int samples, std::uint32_t turn, bool with_emitted,
+void LightGather::gather_batch(std::size_t k, const Values& source, int samples, std::uint32_t turn, bool with_emitted,
                                PointSets* sets, Batch& batch) {
   const CachePoints::Point& point = points_[k];
   glm::vec3 tangent, bitangent;
@@ -131,11 +144,8 @@ void LightGather::gather_batch(std::size_t k, const Values* source, int samples,
     if (with_emitted && !direct_.emitters().is_patch[hit.triangle]) {
       own.add(surface.emission_cd_m2 * share(direction, emitters_.density(hit, direction)), direction, point.normal);
     }
-    const glm::vec3 lux = source ? points_.interpolate_seen(*source, surface.position_m, surface.normal, rays_)
-                                 : direct_.irradiance_by_one(surface.position_m, surface.geometric_normal,
-                                                             surface.normal, golden_sequence(std::uint32_t(s), turn),
-                                                             mix_bits(std::uint32_t(s), turn), cast);
-    sum.add(surface.albedo * lux, direction, point.normal);
+    sum.add(surface.albedo * points_.interpolate_seen(source, surface.position_m, surface.normal, rays_), direction,
+            point.normal);
     if (!sets) continue;
     points_.for_each_seen(surface.position_m, surface.normal,
                           [&](std::uint32_t p) { sets->join(std::uint32_t(k), p); });

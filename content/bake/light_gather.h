@@ -1,8 +1,9 @@
-// Gathers light at cache points over the hemisphere: what sky and surfaces send by themselves, what surfaces reflect of
-// direct light, and of what the cache already knows.
+// Gathers light at cache points: what arrives straight from the emitters, and over the hemisphere what sky and surfaces
+// send by themselves, and what surfaces reflect of light that the points are known to get.
 #pragma once
 
 #include <atomic>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -43,16 +44,21 @@ class LightGather {
         seed_(seed),
         progress_(progress) {}
 
-  // What `source`, reflected once, sends to the points, by so many rays each; null = direct light, found where the rays
-  // hit: near a lamp or at the edge of its shadow no cache would do. emitted receives what sky and surfaces send by
-  // themselves, as far as it is not sampled directly; in sets points are joined that light passes between. Both may be
-  // null. pass: chooses other directions. Of the points from `first` on; what is filled is resized to all. Throws
-  // Interrupted.
-  void reflected(const Values* source, int samples, std::uint32_t pass, Values& values, Values* emitted,
+  // Each works on the points from `first` on; what is filled is resized to all. They throw Interrupted.
+
+  // What arrives straight from the emitters.
+  void direct(Values& values, std::size_t first = 0);
+  // What `source`, reflected once, sends to the points, by so many rays each. emitted receives what sky and surfaces
+  // send by themselves, as far as it is not sampled directly; in sets points are joined that light passes between. Both
+  // may be null. pass: chooses other directions.
+  void reflected(const Values& source, int samples, std::uint32_t pass, Values& values, Values* emitted,
                  PointSets* sets, std::size_t first = 0);
   // Direct light, reflected once, and what is emitted, with up to four times the samples, until the standard error is
-  // less than this share of the light (of dark_lux, where there is less).
-  void first(int samples, std::uint32_t pass, float noise, float dark_lux, Values& reflected, Values& emitted);
+  // less than this share of the light (of dark_lux, where there is less). deviations: receives the standard errors
+  // (lux), or null.
+  static constexpr float kAnyNoise = HUGE_VALF;
+  void first(const Values& direct, int samples, std::uint32_t pass, float noise, float dark_lux, Values& reflected,
+             Values& emitted, std::vector<float>* deviations = nullptr, std::size_t from = 0);
   // Each point the mean of its open neighbourhood: what few rays found (a patch of sun) must not show as a blotch.
   Values smooth(const Values& values) const;
 
@@ -68,7 +74,7 @@ class LightGather {
       return glm::max(lux.r, glm::max(lux.g, lux.b));
     }
   };
-  void gather_batch(std::size_t k, const Values* source, int samples, std::uint32_t turn, bool with_emitted,
+  void gather_batch(std::size_t k, const Values& source, int samples, std::uint32_t turn, bool with_emitted,
                     PointSets* sets, Batch& batch);
 
   const Scene& scene_;

@@ -20,8 +20,9 @@ constexpr int kFirstRays = 96, kSecondRays = 48;
 constexpr std::uint32_t kFirstPass = 101, kSecondPass = 102;
 // Neighbours may be off by this share of the light at a point. They stand a spacing off; what lies between points is
 // about half as far from the next, and its error about a third.
-constexpr float kTolerance = 0.2f;
-constexpr float kDark = 0.1f;              // of the mean light: places that are darker count as this light
+constexpr float kTolerance = 0.25f;
+constexpr float kDoubt = 2.0f;             // standard errors of the guess that noise alone may be off by
+constexpr float kDark = 0.25f;             // of the mean light: places that are darker count as this light
 constexpr std::size_t kFewPoints = 20000;  // may be added to any scene, however small
 constexpr double kToldShare = 0.95;
 
@@ -47,14 +48,15 @@ class Refinement {
 
   // Light at the points from `first` on.
   void guess(std::size_t first) {
-    progress_.begin("light cache points", 2 * (points_.size() - first), "points");
-    gather_.reflected(nullptr, kFirstRays, kFirstPass, once_, &emitted_, nullptr, first);
+    progress_.begin("light cache points", 3 * (points_.size() - first), "points");
+    gather_.direct(direct_, first);
+    gather_.first(direct_, kFirstRays, kFirstPass, LightGather::kAnyNoise, 0.0f, once_, emitted_, &deviations_, first);
     source_.resize(points_.size());
     for (std::size_t k = first; k < points_.size(); ++k) {
       source_[k] = once_[k];
       source_[k] += emitted_[k];
     }
-    gather_.reflected(&source_, kSecondRays, kSecondPass, twice_, nullptr, nullptr, first);
+    gather_.reflected(source_, kSecondRays, kSecondPass, twice_, nullptr, nullptr, first);
     cached_.resize(points_.size());
     for (std::size_t k = first; k < points_.size(); ++k) {
       cached_[k] = source_[k];
@@ -68,7 +70,8 @@ class Refinement {
     tbb::parallel_for(std::size_t(0), points_.size(), [&](std::size_t k) {
       const std::optional<glm::vec3> by_others = points_.by_others(cached_, k);
       if (!by_others) return;
-      const float off = brightest(glm::abs(*by_others - cached_[k].lux)), all = brightest(cached_[k].lux);
+      const float off = brightest(glm::abs(*by_others - cached_[k].lux)) - kDoubt * deviations_[k],
+                  all = brightest(cached_[k].lux);
       errors_[k] = off > 0.0f ? off / std::max(all, dark_lux_) : 0.0f;
     });
   }
@@ -95,8 +98,8 @@ class Refinement {
   CachePoints& points_;
   Progress& progress_;
   LightGather gather_;
-  Values emitted_, once_, source_, twice_, cached_;
-  std::vector<float> errors_;
+  Values direct_, emitted_, once_, source_, twice_, cached_;
+  std::vector<float> errors_, deviations_;
   float dark_lux_ = 0.0f;
 };
 
