@@ -9,11 +9,9 @@ namespace probewalk {
 namespace {
 
 // The first bounce carries the windows and lamps, and is gathered with more rays than the later, smoother ones.
-constexpr int kFirstGather = 2;
 int rays_of_bounce(int samples, int bounce) {
-  return bounce == 1 ? kFirstGather * samples : bounce == 2 ? samples : std::max(samples / 2, 1);
+  return bounce == 1 ? IrradianceCache::kFirstGather * samples : bounce == 2 ? samples : std::max(samples / 2, 1);
 }
-constexpr float kNoise = 0.02f;  // standard error of the first bounce, as a share of its light; more rays until then
 constexpr float kMaxTailRatio = 0.95f;
 
 using Values = LightGather::Values;
@@ -32,8 +30,9 @@ void add(Values& to, const Values& values) {
 }  // namespace
 
 IrradianceCache::IrradianceCache(const Scene& scene, const RayScene& rays, const CachePoints& points,
-                                 const DirectLight& direct, const LightOptions& options, float dark_lux,
-                                 Progress& progress, std::vector<CachedLight> kept)
+                                 const DirectLight& direct, const LightOptions& options,
+                                 const std::vector<std::uint8_t>& times_rays, Progress& progress,
+                                 std::vector<CachedLight> kept)
     : points_(points) {
   if (!kept.empty() && kept.size() == points_.size()) {
     indirect_ = std::move(kept);
@@ -46,7 +45,7 @@ IrradianceCache::IrradianceCache(const Scene& scene, const RayScene& rays, const
   // The series of bounces: each gathers what the one before has added.
   Values direct_values, emitted, last;
   gather.direct(direct_values);
-  gather.first(direct_values, rays_of_bounce(options.samples, 1), 1, kNoise, dark_lux, last, emitted);
+  gather.reflected(direct_values, rays_of_bounce(options.samples, 1), 1, last, &emitted, nullptr, &times_rays);
   indirect_ = emitted;
   if (bounces == 0) {
     indirect_ = gather.smooth(indirect_);

@@ -14,10 +14,13 @@ namespace probewalk {
 
 class IrradianceCache {
  public:
+  static constexpr int kFirstGather = 2;  // times the samples are the rays of the first bounce
+
   // The points must outlive the cache. kept: values() of an earlier, equal cache; used when they are as many as there
-  // are points. dark_lux: places with less light may be as noisy as with this much. Throws Interrupted when progress is cancelled.
+  // are points. times_rays: by point, how many times the rays of the first bounce.
   IrradianceCache(const Scene& scene, const RayScene& rays, const CachePoints& points, const DirectLight& direct,
-                  const LightOptions& options, float dark_lux, Progress& progress, std::vector<CachedLight> kept);
+                  const LightOptions& options, const std::vector<std::uint8_t>& times_rays, Progress& progress,
+                  std::vector<CachedLight> kept);
 
   // Irradiance (lux) from everything that DirectLight does not count: sky, large emitters, reflected light.
   glm::vec3 indirect(glm::vec3 position_m, glm::vec3 normal) const {

@@ -31,8 +31,9 @@ struct LightField::Impl {
         rays(rays_in),
         points(scene_in, rays_in, options.cache_spacing_m, kMaxPoints, progress),
         direct(scene_in, rays_in, points, progress),
-        refinement(refine_points(scene_in, rays_in, direct, options.seed, points, progress)),
-        cache(scene_in, rays_in, points, direct, options, refinement.dark_lux, progress, std::move(kept)) {}
+        refinement(refine_points(scene_in, rays_in, direct, options.seed,
+                                 IrradianceCache::kFirstGather * options.samples, points, progress)),
+        cache(scene_in, rays_in, points, direct, options, refinement.times_rays, progress, std::move(kept)) {}
 
   const Scene& scene;
   const RayScene& rays;
@@ -55,10 +56,10 @@ LightField::LightField(const Scene& scene, const RayScene& rays, const LightOpti
   }
   const LightRefinement& refined = impl_->refinement;
   if (refined.added > 0) {
-    progress.note(fmt::format("light is cached at {} points, {} of them closer together where light changes: their "
-                              "neighbours were off by more than {:.0f} % at a twentieth of the points, and are by {:.0f} %",
-                              impl_->points.size(), refined.added, 100.0 * refined.error_before,
-                              100.0 * refined.error_after));
+    progress.note(
+        fmt::format("light is cached at {} points, {} of them closer together where light changes: their "
+                    "neighbours were off by more than {:.0f} % at a twentieth of the points, and are by {:.0f} %",
+                    impl_->points.size(), refined.added, 100.0 * refined.error_before, 100.0 * refined.error_after));
   }
 }
 
@@ -100,8 +101,8 @@ glm::vec3 LightField::indirect(glm::vec3 position_m, glm::vec3 normal) const {
 }
 
 std::uint64_t LightField::rays_cast() const {
-  return impl_->points.rays_cast() + impl_->direct.rays_cast() + impl_->refinement.rays_cast + impl_->cache.rays_cast() +
-         impl_->rays_cast.combine(std::plus<>());
+  return impl_->points.rays_cast() + impl_->direct.rays_cast() + impl_->refinement.rays_cast +
+         impl_->cache.rays_cast() + impl_->rays_cast.combine(std::plus<>());
 }
 
 std::size_t LightField::cache_points() const {

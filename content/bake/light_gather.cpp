@@ -15,8 +15,7 @@ namespace probewalk {
 namespace {
 
 constexpr int kRaysPerPick = 8;   // over the hemisphere, to one to an emitter
-constexpr int kFirstBatches = 4;  // that tell a first noise
-constexpr int kMostBatches = 4;   // times as many, where noise wants them
+constexpr int kGuessBatches = 4;  // that tell the noise of a guess
 
 }  // namespace
 
@@ -66,44 +65,43 @@ void LightGather::direct(Values& values, std::size_t first) {
 }
 
 void LightGather::reflected(const Values& source, int samples, std::uint32_t pass, Values& values, Values* emitted,
-                            PointSets* sets, std::size_t first) {
+                            PointSets* sets, const std::vector<std::uint8_t>* times) {
   values.resize(points_.size());
   if (emitted) emitted->resize(points_.size());
-  for_each_point(first, [&](std::size_t k) {
-    Batch batch;
-    gather_batch(k, source, samples, mix_place(points_[k].position_m, seed_ + pass), emitted != nullptr, sets, batch);
-    values[k] = batch.reflected;
-    if (emitted) (*emitted)[k] = batch.emitted;
+  for_each_point(0, [&](std::size_t k) {
+    const std::uint32_t turn = mix_place(points_[k].position_m, seed_ + pass);
+    const std::uint32_t batches = times ? std::max<std::uint32_t>((*times)[k], 1) : 1;
+    Batch sum;
+    for (std::uint32_t b = 0; b < batches; ++b) {
+      gather_batch(k, source, samples, b == 0 ? turn : mix_bits(b, turn), emitted != nullptr, sets, sum);
+    }
+    values[k] = sum.reflected * (1.0f / static_cast<float>(batches));
+    if (emitted) (*emitted)[k] = sum.emitted * (1.0f / static_cast<float>(batches));
   });
 }
 
-void LightGather::first(const Values& direct, int samples, std::uint32_t pass, float noise, float dark_lux,
-                        Values& reflected, Values& emitted, std::vector<float>* deviations, std::size_t from) {
-  reflected.resize(points_.size());
-  emitted.resize(points_.size());
+void LightGather::guess(const Values& source, int samples, std::uint32_t pass, Values& values, Values* emitted,
+                        std::vector<float>* deviations, std::size_t first) {
+  values.resize(points_.size());
+  if (emitted) emitted->resize(points_.size());
   if (deviations) deviations->resize(points_.size());
-  const int each = std::max(samples / kFirstBatches, 1);
-  for_each_point(from, [&](std::size_t k) {
+  for_each_point(first, [&](std::size_t k) {
     const std::uint32_t turn = mix_place(points_[k].position_m, seed_ + pass);
     Batch sum;
     float squares = 0.0f;  // of the brightness of each batch
-    float deviation = 0.0f;
-    int batches = 0;
-    for (; batches < kFirstBatches * kMostBatches; ++batches) {
-      if (batches >= kFirstBatches) {
-        const float n = static_cast<float>(batches), mean = sum.brightness() / n;
-        deviation = std::sqrt(std::max(squares / n - mean * mean, 0.0f) / (n - 1.0f));
-        if (deviation <= noise * std::max(mean, dark_lux) || noise == kAnyNoise) break;
-      }
+    for (std::uint32_t b = 0; b < kGuessBatches; ++b) {
       Batch batch;
-      gather_batch(k, direct, each, mix_bits(std::uint32_t(batches), turn), true, nullptr, batch);
+      gather_batch(k, source, std::max(samples / kGuessBatches, 1), mix_bits(b, turn), emitted != nullptr, nullptr,
+                   batch);
       sum.reflected += batch.reflected;
       sum.emitted += batch.emitted;
       squares += batch.brightness() * batch.brightness();
     }
-    if (deviations) (*deviations)[k] = deviation;
-    reflected[k] = sum.reflected * (1.0f / static_cast<float>(batches));
-    emitted[k] = sum.emitted * (1.0f / static_cast<float>(batches));
+    constexpr float kCount = kGuessBatches;
+    values[k] = sum.reflected * (1.0f / kCount);
+    if (emitted) (*emitted)[k] = sum.emitted * (1.0f / kCount);
+    const float mean = sum.brightness() / kCount;
+    if (deviations) (*deviations)[k] = std::sqrt(std::max(squares / kCount - mean * mean, 0.0f) / (kCount - 1.0f));
   });
 }
 
@@ -159,8 +157,8 @@ void LightGather::gather_batch(std::size_t k, const Values& source, int samples,
   }
   rays_cast_ += cast;
   // Cosine-distributed: irradiance = pi * mean radiance; reflected radiance = albedo / pi * irradiance.
-  batch.reflected = sum * (1.0f / static_cast<float>(samples));
-  batch.emitted = own * (std::numbers::pi_v<float> / static_cast<float>(samples));
+  batch.reflected += sum * (1.0f / static_cast<float>(samples));
+  batch.emitted += own * (std::numbers::pi_v<float> / static_cast<float>(samples));
 }
 
 }  // namespace probewalk

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <atomic>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -44,21 +43,19 @@ class LightGather {
         seed_(seed),
         progress_(progress) {}
 
-  // Each works on the points from `first` on; what is filled is resized to all. They throw Interrupted.
+  // What is filled is resized to all points; where there is a `first`, those from it on are worked on. All throw
+  // Interrupted.
 
   // What arrives straight from the emitters.
   void direct(Values& values, std::size_t first = 0);
   // What `source`, reflected once, sends to the points, by so many rays each. emitted receives what sky and surfaces
-  // send by themselves, as far as it is not sampled directly; in sets points are joined that light passes between. Both
-  // may be null. pass: chooses other directions.
+  // send by themselves, as far as it is not sampled directly; in sets points are joined that light passes between;
+  // times: how many times the rays, by point. All three may be null. pass: chooses other directions.
   void reflected(const Values& source, int samples, std::uint32_t pass, Values& values, Values* emitted,
-                 PointSets* sets, std::size_t first = 0);
-  // Direct light, reflected once, and what is emitted, with up to four times the samples, until the standard error is
-  // less than this share of the light (of dark_lux, where there is less). deviations: receives the standard errors
-  // (lux), or null.
-  static constexpr float kAnyNoise = HUGE_VALF;
-  void first(const Values& direct, int samples, std::uint32_t pass, float noise, float dark_lux, Values& reflected,
-             Values& emitted, std::vector<float>* deviations = nullptr, std::size_t from = 0);
+                 PointSets* sets, const std::vector<std::uint8_t>* times = nullptr);
+  // The same by few rays, and how far off it may be: deviations receives standard errors (lux), or is null.
+  void guess(const Values& source, int samples, std::uint32_t pass, Values& values, Values* emitted,
+             std::vector<float>* deviations, std::size_t first);
   // Each point the mean of its open neighbourhood: what few rays found (a patch of sun) must not show as a blotch.
   Values smooth(const Values& values) const;
 
@@ -74,6 +71,7 @@ class LightGather {
       return glm::max(lux.r, glm::max(lux.g, lux.b));
     }
   };
+  // Adds to the batch.
   void gather_batch(std::size_t k, const Values& source, int samples, std::uint32_t turn, bool with_emitted,
                     PointSets* sets, Batch& batch);
 

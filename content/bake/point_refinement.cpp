@@ -24,6 +24,8 @@ constexpr float kTolerance = 0.25f;
 constexpr float kDoubt = 2.0f;             // standard errors of the guess that noise alone may be off by
 constexpr float kDark = 0.25f;             // of the mean light: places that are darker count as this light
 constexpr std::size_t kFewPoints = 20000;  // may be added to any scene, however small
+constexpr float kNoise = 0.02f;            // wanted, of the light at a point
+constexpr float kMostTimes = 4.0f;
 constexpr double kToldShare = 0.95;
 
 float brightest(glm::vec3 rgb) {
@@ -50,13 +52,13 @@ class Refinement {
   void guess(std::size_t first) {
     progress_.begin("light cache points", 3 * (points_.size() - first), "points");
     gather_.direct(direct_, first);
-    gather_.first(direct_, kFirstRays, kFirstPass, LightGather::kAnyNoise, 0.0f, once_, emitted_, &deviations_, first);
+    gather_.guess(direct_, kFirstRays, kFirstPass, once_, &emitted_, &deviations_, first);
     source_.resize(points_.size());
     for (std::size_t k = first; k < points_.size(); ++k) {
       source_[k] = once_[k];
       source_[k] += emitted_[k];
     }
-    gather_.reflected(source_, kSecondRays, kSecondPass, twice_, nullptr, nullptr, first);
+    gather_.guess(source_, kSecondRays, kSecondPass, twice_, nullptr, nullptr, first);
     cached_.resize(points_.size());
     for (std::size_t k = first; k < points_.size(); ++k) {
       cached_[k] = source_[k];
@@ -91,7 +93,18 @@ class Refinement {
     std::stable_sort(off.begin(), off.end(), [&](std::uint32_t a, std::uint32_t b) { return errors_[a] > errors_[b]; });
     return off;
   }
-  float dark_lux() const { return dark_lux_; }
+  // How many times so many rays bring the standard error of the first bounce below kNoise. By other rays than those
+  // that will be cast: to go on where what was found so far is noisy would stop early where nothing was found.
+  std::vector<std::uint8_t> times_rays(int rays) const {
+    std::vector<std::uint8_t> times(points_.size());
+    for (std::size_t k = 0; k < points_.size(); ++k) {
+      const float light = std::max(brightest(source_[k].lux), dark_lux_);
+      const float ratio = light > 0.0f ? deviations_[k] / (kNoise * light) : 0.0f;
+      const float wanted = static_cast<float>(kFirstRays) * ratio * ratio / static_cast<float>(rays);
+      times[k] = static_cast<std::uint8_t>(std::clamp(std::ceil(wanted), 1.0f, kMostTimes));
+    }
+    return times;
+  }
   std::uint64_t rays_cast() const { return gather_.rays_cast(); }
 
  private:
@@ -106,7 +119,7 @@ class Refinement {
 }  // namespace
 
 LightRefinement refine_points(const Scene& scene, const RayScene& rays, const DirectLight& direct, std::uint32_t seed,
-                              CachePoints& points, Progress& progress) {
+                              int first_rays, CachePoints& points, Progress& progress) {
   LightRefinement result;
   const std::size_t before = points.size(), most = std::max(before / 2, std::min(2 * before, kFewPoints));
   Refinement refinement(scene, rays, direct, seed, points, progress);
@@ -126,7 +139,7 @@ LightRefinement refine_points(const Scene& scene, const RayScene& rays, const Di
   }
   result.added = points.size() - before;
   result.rays_cast = refinement.rays_cast();
-  result.dark_lux = refinement.dark_lux();
+  result.times_rays = refinement.times_rays(first_rays);
   return result;
 }
 

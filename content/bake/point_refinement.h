@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include "content/bake/cache_points.h"
 #include "content/bake/direct_light.h"
@@ -17,13 +18,14 @@ namespace probewalk {
 struct LightRefinement {
   std::size_t added = 0;
   std::uint64_t rays_cast = 0;
-  float dark_lux = 0.0f;  // places with less light count as with this much
+  // By point: how many times first_rays its first bounce wants, lest it be noisy.
+  std::vector<std::uint8_t> times_rays;
   // How far neighbours are off, as a share of all light at a point: of a twentieth of the points by more than this.
   double error_before = 0.0, error_after = 0.0;
 };
 
 // Deterministic, whatever the threads. Throws Interrupted.
 LightRefinement refine_points(const Scene& scene, const RayScene& rays, const DirectLight& direct, std::uint32_t seed,
-                              CachePoints& points, Progress& progress);
+                              int first_rays, CachePoints& points, Progress& progress);
 
 }  // namespace probewalk
