@@ -101,7 +101,8 @@ std::string hash_options(const BakeOptions& options, const Scene& scene) {
   const std::string planned = target.asked() ? fmt::format(" error {:a} budget {} most {} {} {}", target.error,
                                                            target.budget_bytes, target.most_probes, target.most_geometry,
                                                            target.most_radiance) : "";
-  const std::string all = text + planned + fmt::format(" samples {}", static_cast<int>(options.samples));
+  const std::string all =
+      text + planned + fmt::format(" samples {} light {}", static_cast<int>(options.samples), kLightVersion);
   return content_hash(std::as_bytes(std::span(all)));
 }
 

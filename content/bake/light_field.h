@@ -1,7 +1,7 @@
 // Outgoing radiance at any surface point: one deterministic, view-independent function that the bake and the reference
 // pictures share, so that errors measured are errors of the probes. Direct light by next-event estimation over a fixed
 // low-discrepancy pattern (eight shadow rays, more only where more lights shine), indirect from irradiance cached on
-// the surfaces.
+// the surfaces, more densely where it changes.
 #pragma once
 
 #include <cstdint>
@@ -16,6 +16,9 @@
 #include "content/scene/scene.h"
 
 namespace probewalk {
+
+// Raised when the same scene and options get other light, lest a bake go on from what an earlier baker has kept.
+inline constexpr int kLightVersion = 2;
 
 struct LightOptions {
   int bounces = 4;    // of indirect light
