@@ -15,6 +15,7 @@
 #include "content/bake/bake_state.h"
 #include "content/bake/exposure.h"
 #include "content/bake/map_store.h"
+#include "content/bake/placement/bare_rooms.h"
 #include "content/bake/plan/plan_report.h"
 #include "content/bake/plan_picture.h"
 #include "content/bake/probe_lattice.h"
@@ -267,16 +268,8 @@ class BakeJob {
   void name_rooms_without_probes() {
     const auto most = options_.target.asked() ? options_.target.most_probes : std::size_t(options_.placement.max_probes);
     if (options_.target.asked() && manifest_.probe_positions_m.size() < most) return;
-    std::vector<bool> has_floor(manifest_.rooms.size(), false);
-    for (const FloorNode& node : space_.floor.nodes) has_floor[node.room] = true;
-    std::vector<std::string> without;
-    for (std::size_t k = 0; k < manifest_.rooms.size(); ++k) {
-      if (has_floor[k] && manifest_.rooms[k].probe_count == 0) without.push_back(manifest_.rooms[k].id);
-    }
-    if (without.empty()) return;
-    const std::string warning = fmt::format(
-        "{} of {} rooms with floor have no probe and are seen by their neighbours' alone: {}; raise --max-probes {}",
-        without.size(), std::count(has_floor.begin(), has_floor.end(), true), fmt::join(without, ", "), most);
+    const std::string warning = bare_rooms_warning(space_, manifest_.rooms, most);
+    if (warning.empty()) return;
     progress_.note("warning: " + warning);
     manifest_.warnings.push_back(warning);
   }

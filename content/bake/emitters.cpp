@@ -43,12 +43,6 @@ TriangleCorners corners(const Scene& scene, std::uint32_t triangle) {
   return {scene.positions_m[index.x], scene.positions_m[index.y], scene.positions_m[index.z]};
 }
 
-// The uniform point of a triangle for a point of the unit square.
-glm::vec2 triangle_point(glm::vec2 square) {
-  const float root = std::sqrt(square.x);
-  return {root * (1.0f - square.y), root * square.y};
-}
-
 // Whether light that leaves along `normal` gets anywhere.
 bool side_is_open(const RayScene& rays, glm::vec3 position, glm::vec3 normal, const std::vector<bool>& own) {
   glm::vec3 tangent, bitangent;

@@ -11,11 +11,6 @@ namespace {
 
 constexpr std::uint32_t kPowerPlaces = 4;  // of a triangle, whose mean emission says how often it is picked
 
-glm::vec2 triangle_point(glm::vec2 square) {
-  const float root = std::sqrt(square.x);
-  return {root * (1.0f - square.y), root * square.y};
-}
-
 }  // namespace
 
 GatheredEmitters::GatheredEmitters(const Scene& scene, const RayScene& rays, const Emitters& emitters)

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "content/bake/light_gather.h"
+#include "content/bake/point_sets.h"
 
 namespace probewalk {
 namespace {
@@ -29,27 +29,23 @@ void add(Values& to, const Values& values) {
 
 }  // namespace
 
-IrradianceCache::IrradianceCache(const Scene& scene, const RayScene& rays, const CachePoints& points,
-                                 const DirectLight& direct, const LightOptions& options,
-                                 const std::vector<std::uint8_t>& times_rays, Progress& progress,
-                                 std::vector<CachedLight> kept)
+IrradianceCache::IrradianceCache(const CachePoints& points, LightGather& gather, const LightOptions& options,
+                                 const LightRefinement& refinement, Progress& progress, std::vector<CachedLight> kept)
     : points_(points) {
   if (!kept.empty() && kept.size() == points_.size()) {
     indirect_ = std::move(kept);
     return;
   }
-  LightGather gather(scene, rays, direct, points_, options.seed, progress);
   const int bounces = std::max(options.bounces, 0);
-  progress.begin("light cache", points_.size() * static_cast<std::uint64_t>(2 + std::max(bounces, 0)), "points");
+  progress.begin("light cache", points_.size() * static_cast<std::uint64_t>(1 + bounces), "points");
 
   // The series of bounces: each gathers what the one before has added.
-  Values direct_values, emitted, last;
-  gather.direct(direct_values);
-  gather.reflected(direct_values, rays_of_bounce(options.samples, 1), 1, last, &emitted, nullptr, &times_rays);
+  Values emitted, last;
+  gather.reflected(refinement.direct, rays_of_bounce(options.samples, 1), 1, last, &emitted, nullptr,
+                   &refinement.times_rays);
   indirect_ = emitted;
   if (bounces == 0) {
     indirect_ = gather.smooth(indirect_);
-    rays_cast_ = gather.rays_cast();
     return;
   }
   add(indirect_, last);
@@ -78,7 +74,6 @@ IrradianceCache::IrradianceCache(const Scene& scene, const RayScene& rays, const
     }
   }
   indirect_ = gather.smooth(indirect_);
-  rays_cast_ = gather.rays_cast();
 }
 
 }  // namespace probewalk

@@ -31,14 +31,16 @@ struct LightField::Impl {
         rays(rays_in),
         points(scene_in, rays_in, options.cache_spacing_m, kMaxPoints, progress),
         direct(scene_in, rays_in, points, progress),
-        refinement(refine_points(scene_in, rays_in, direct, options.seed,
-                                 IrradianceCache::kFirstGather * options.samples, points, progress)),
-        cache(scene_in, rays_in, points, direct, options, refinement.times_rays, progress, std::move(kept)) {}
+        gather(scene_in, rays_in, direct, points, options.seed, progress),
+        refinement(refine_points(scene_in, rays_in, gather, IrradianceCache::kFirstGather * options.samples, points,
+                                 progress)),
+        cache(points, gather, options, refinement, progress, std::move(kept)) {}
 
   const Scene& scene;
   const RayScene& rays;
   CachePoints points;
   DirectLight direct;
+  LightGather gather;
   LightRefinement refinement;
   IrradianceCache cache;
   LightListener* listener = nullptr;
@@ -101,8 +103,8 @@ glm::vec3 LightField::indirect(glm::vec3 position_m, glm::vec3 normal) const {
 }
 
 std::uint64_t LightField::rays_cast() const {
-  return impl_->points.rays_cast() + impl_->direct.rays_cast() + impl_->refinement.rays_cast +
-         impl_->cache.rays_cast() + impl_->rays_cast.combine(std::plus<>());
+  return impl_->points.rays_cast() + impl_->direct.rays_cast() + impl_->gather.rays_cast() +
+         impl_->rays_cast.combine(std::plus<>());
 }
 
 std::size_t LightField::cache_points() const {

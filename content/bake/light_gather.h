@@ -11,28 +11,18 @@
 #include "content/bake/cached_light.h"
 #include "content/bake/direct_light.h"
 #include "content/bake/gathered_emitters.h"
+#include "content/bake/point_sets.h"
 #include "content/progress.h"
 #include "content/scene/ray_scene.h"
 #include "content/scene/scene.h"
 
 namespace probewalk {
 
-// Points that light passes between, by the least of each set, whatever the order in which threads join them.
-class PointSets {
- public:
-  explicit PointSets(std::size_t count);
-  std::uint32_t first_of(std::uint32_t point);
-  void join(std::uint32_t a, std::uint32_t b);
-
- private:
-  std::vector<std::atomic<std::uint32_t>> parents_;
-};
-
 class LightGather {
  public:
   using Values = std::vector<CachedLight>;  // one a point
 
-  // All must outlive this.
+  // All must outlive this. The points may become more.
   LightGather(const Scene& scene, const RayScene& rays, const DirectLight& direct, const CachePoints& points,
               std::uint32_t seed, Progress& progress)
       : scene_(scene),
@@ -66,10 +56,7 @@ class LightGather {
   void for_each_point(std::size_t first, Work&& work);
   struct Batch {
     CachedLight reflected, emitted;
-    float brightness() const {
-      const glm::vec3 lux = reflected.lux + emitted.lux;
-      return glm::max(lux.r, glm::max(lux.g, lux.b));
-    }
+    float brightness() const { return strongest_channel(reflected.lux + emitted.lux); }
   };
   // Adds to the batch.
   void gather_batch(std::size_t k, const Values& source, int samples, std::uint32_t turn, bool with_emitted,

@@ -62,6 +62,13 @@ inline void tangent_frame(glm::vec3 n, glm::vec3& tangent, glm::vec3& bitangent)
   bitangent = {b, sign + n.y * n.y * a, -n.y};
 }
 
+// The uniform point of a triangle, as barycentric coordinates of its second and third corner, for a point of the unit
+// square.
+inline glm::vec2 triangle_point(glm::vec2 square) {
+  const float root = std::sqrt(square.x);
+  return {root * (1.0f - square.y), root * square.y};
+}
+
 // Direction of the hemisphere around z with density cos / pi.
 inline glm::vec3 cosine_direction(glm::vec2 point) {
   const float radius = std::sqrt(point.x), angle = 2.0f * std::numbers::pi_v<float> * point.y;

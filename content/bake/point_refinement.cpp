@@ -4,9 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <vector>
+#include <utility>
 
-#include "content/bake/light_gather.h"
 #include "content/bake/point_scatter.h"
 
 namespace probewalk {
@@ -19,7 +18,7 @@ constexpr int kHalvings = 3;  // of the spacing, as narrow places have
 constexpr int kFirstRays = 96, kSecondRays = 48;
 constexpr std::uint32_t kFirstPass = 101, kSecondPass = 102;
 // Neighbours may be off by this share of the light at a point. They stand a spacing off; what lies between points is
-// about half as far from the next, and its error about a third.
+// nearer to the next.
 constexpr float kTolerance = 0.25f;
 constexpr float kDoubt = 2.0f;             // standard errors of the guess that noise alone may be off by
 constexpr float kDark = 0.25f;             // of the mean light: places that are darker count as this light
@@ -28,10 +27,6 @@ constexpr float kNoise = 0.02f;            // wanted, of the light at a point
 constexpr float kMostTimes = 4.0f;
 constexpr double kToldShare = 0.95;
 
-float brightest(glm::vec3 rgb) {
-  return std::max(rgb.r, std::max(rgb.g, rgb.b));
-}
-
 // A power of four: a lamp more or less elsewhere must not move points everywhere.
 float coarse_scale(double mean) {
   return mean > 0.0 ? static_cast<float>(std::exp2(2.0 * std::floor(0.5 * std::log2(mean)))) : 0.0f;
@@ -39,12 +34,11 @@ float coarse_scale(double mean) {
 
 class Refinement {
  public:
-  Refinement(const Scene& scene, const RayScene& rays, const DirectLight& direct, std::uint32_t seed,
-             CachePoints& points, Progress& progress)
-      : points_(points), progress_(progress), gather_(scene, rays, direct, points, seed, progress) {
+  Refinement(LightGather& gather, CachePoints& points, Progress& progress)
+      : points_(points), progress_(progress), gather_(gather) {
     guess(0);
     double sum = 0.0;
-    for (const CachedLight& cached : cached_) sum += brightest(cached.lux);
+    for (const CachedLight& cached : cached_) sum += strongest_channel(cached.lux);
     dark_lux_ = kDark * coarse_scale(sum / std::max<double>(1.0, double(points_.size())));
   }
 
@@ -72,8 +66,8 @@ class Refinement {
     tbb::parallel_for(std::size_t(0), points_.size(), [&](std::size_t k) {
       const std::optional<glm::vec3> by_others = points_.by_others(cached_, k);
       if (!by_others) return;
-      const float off = brightest(glm::abs(*by_others - cached_[k].lux)) - kDoubt * deviations_[k],
-                  all = brightest(cached_[k].lux);
+      const float off = strongest_channel(glm::abs(*by_others - cached_[k].lux)) - kDoubt * deviations_[k],
+                  all = strongest_channel(cached_[k].lux);
       errors_[k] = off > 0.0f ? off / std::max(all, dark_lux_) : 0.0f;
     });
   }
@@ -98,19 +92,19 @@ class Refinement {
   std::vector<std::uint8_t> times_rays(int rays) const {
     std::vector<std::uint8_t> times(points_.size());
     for (std::size_t k = 0; k < points_.size(); ++k) {
-      const float light = std::max(brightest(source_[k].lux), dark_lux_);
+      const float light = std::max(strongest_channel(source_[k].lux), dark_lux_);
       const float ratio = light > 0.0f ? deviations_[k] / (kNoise * light) : 0.0f;
       const float wanted = static_cast<float>(kFirstRays) * ratio * ratio / static_cast<float>(rays);
       times[k] = static_cast<std::uint8_t>(std::clamp(std::ceil(wanted), 1.0f, kMostTimes));
     }
     return times;
   }
-  std::uint64_t rays_cast() const { return gather_.rays_cast(); }
+  Values take_direct() { return std::move(direct_); }
 
  private:
   CachePoints& points_;
   Progress& progress_;
-  LightGather gather_;
+  LightGather& gather_;
   Values direct_, emitted_, once_, source_, twice_, cached_;
   std::vector<float> errors_, deviations_;
   float dark_lux_ = 0.0f;
@@ -118,11 +112,11 @@ class Refinement {
 
 }  // namespace
 
-LightRefinement refine_points(const Scene& scene, const RayScene& rays, const DirectLight& direct, std::uint32_t seed,
-                              int first_rays, CachePoints& points, Progress& progress) {
+LightRefinement refine_points(const Scene& scene, const RayScene& rays, LightGather& gather, int first_rays,
+                              CachePoints& points, Progress& progress) {
   LightRefinement result;
   const std::size_t before = points.size(), most = std::max(before / 2, std::min(2 * before, kFewPoints));
-  Refinement refinement(scene, rays, direct, seed, points, progress);
+  Refinement refinement(gather, points, progress);
   refinement.measure();
   result.error_before = result.error_after = refinement.told_error();
   for (int halving = 1; halving <= kHalvings && points.size() < before + most; ++halving) {
@@ -138,7 +132,7 @@ LightRefinement refine_points(const Scene& scene, const RayScene& rays, const Di
     result.error_after = refinement.told_error();
   }
   result.added = points.size() - before;
-  result.rays_cast = refinement.rays_cast();
+  result.direct = refinement.take_direct();
   result.times_rays = refinement.times_rays(first_rays);
   return result;
 }

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "content/bake/cache_points.h"
-#include "content/bake/direct_light.h"
+#include "content/bake/light_gather.h"
 #include "content/progress.h"
 #include "content/scene/ray_scene.h"
 #include "content/scene/scene.h"
@@ -17,15 +17,16 @@ namespace probewalk {
 
 struct LightRefinement {
   std::size_t added = 0;
-  std::uint64_t rays_cast = 0;
   // By point: how many times first_rays its first bounce wants, lest it be noisy.
   std::vector<std::uint8_t> times_rays;
-  // How far neighbours are off, as a share of all light at a point: of a twentieth of the points by more than this.
+  LightGather::Values direct;  // light that arrives straight from the emitters, by point
+  // How far neighbours are off, beyond what noise explains, as a share of all light at a point: of a twentieth of the
+  // points by more than this.
   double error_before = 0.0, error_after = 0.0;
 };
 
-// Deterministic, whatever the threads. Throws Interrupted.
-LightRefinement refine_points(const Scene& scene, const RayScene& rays, const DirectLight& direct, std::uint32_t seed,
-                              int first_rays, CachePoints& points, Progress& progress);
+// gather: of the points. Deterministic, whatever the threads. Throws Interrupted.
+LightRefinement refine_points(const Scene& scene, const RayScene& rays, LightGather& gather, int first_rays,
+                              CachePoints& points, Progress& progress);
 
 }  // namespace probewalk

@@ -1,8 +1,9 @@
 // How far baked light is off, judged by unbiased paths that share no light sampling with it: by hand, not run by ctest.
-//   light_judge [--texels N] [--paths N] [--probes N] [--samples N] [--spacing-mm N] [--worst N] [--bounce N] SCENE...
-// At places that probes see (--bounce 1: that those places see, where light comes from), the light that arrives as the bake has it is set beside the mean of reference paths, part
-// by part: lights and patches, which the bake samples directly; the rest, which its cache holds. A part's bias is told
-// as a share of all light, with the standard error over the places; its noise beside that of the judge.
+//   light_judge [--texels N] [--paths N] [--probes N] [--samples N] [--spacing-mm N] [--worst N] [--bounces N] SCENE...
+// At places that probes see (--bounces N: that light comes to those from, so often reflected), the light that arrives as
+// the bake has it is set beside the mean of reference paths, part by part: lights and patches, which the bake samples
+// directly; the rest, which its cache holds. A part's bias is told as a share of all light, with the standard error over
+// the places; its noise beside that of the judge.
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
@@ -48,7 +49,7 @@ struct Place {
 };
 
 struct Options {
-  int texels = 300, paths = 4096, probes = 4, samples = 128, spacing_mm = 250, worst = 0, bounce = 0;
+  int texels = 300, paths = 4096, probes = 4, samples = 128, spacing_mm = 250, worst = 0, bounces = 0;
 };
 
 // Harmonic mean over the hemisphere: small where something is near.
@@ -80,6 +81,7 @@ void judge(const std::filesystem::path& file, const Options& options) {
   const LightField field(scene, rays, light_options, progress);
   const double light_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
   light_options.bounces = 0;
+  const double rays_per_point = double(field.rays_cast()) / double(std::max<std::size_t>(field.cache_points(), 1));
   const LightField unreflected(scene, rays, light_options, progress);
   const Emitters& emitters = field.direct().emitters();
   const EmitterLight by_emitter(emitters, rays);
@@ -97,16 +99,18 @@ void judge(const std::filesystem::path& file, const Options& options) {
     const SurfaceHit hit = rays.closest(from, direction);
     if (!hit.hit) continue;
     SurfacePoint surface = surface_at(scene, hit, direction, 0.01f);
-    if (options.bounce > 0) {
+    bool is_place = true;
+    for (int bounce = 0; bounce < options.bounces && is_place; ++bounce) {
       glm::vec3 tangent, bitangent;
       tangent_frame(surface.normal, tangent, bitangent);
       const glm::vec3 local = cosine_direction({unit(), unit()});
       const glm::vec3 away = tangent * local.x + bitangent * local.y + surface.normal * local.z;
       const glm::vec3 origin = surface.position_m + surface.geometric_normal * ray_offset_m(surface.position_m);
       const SurfaceHit next = rays.closest(origin, away);
-      if (!next.hit) continue;
-      surface = surface_at(scene, next, away, 0.05f);
+      is_place = next.hit;
+      if (is_place) surface = surface_at(scene, next, away, 0.05f);
     }
+    if (!is_place) continue;
     if (!surface.unlit && luminance(surface.albedo) > 0.01f) places.push_back({surface});
   }
   tbb::parallel_for(std::size_t(0), places.size(), [&](std::size_t k) {
@@ -157,9 +161,9 @@ void judge(const std::filesystem::path& file, const Options& options) {
   double all = 0.0;
   for (const Place& place : places) all += place.judged[kAll];
   const double n = double(places.size()), dark = kDark * all / n;
-  fmt::print("{}: {} places, {} paths each, {} patches, {} lights; {} cache points, made and lit in {:.1f} s\n",
+  fmt::print("{}: {} places, {} paths each, {} patches, {} lights; {} cache points, made and lit in {:.1f} s by {:.0f} rays each\n",
              file.string(), places.size(), options.paths, emitters.patches.size(), emitters.lights.size(),
-             field.cache_points(), light_s);
+             field.cache_points(), light_s, rays_per_point);
   fmt::print("  {:<24}{:>9}{:>10}{:>9}{:>13}{:>11}{:>13}\n", "shares of all light", "judged", "bias", "+-",
              "of it judge", "RMS error", "judge's RMS");
   for (int part = 0; part < kParts; ++part) {
@@ -215,7 +219,7 @@ int run(const std::vector<std::string>& arguments) {
   const std::map<std::string, int*> numbers{{"--texels", &options.texels},         {"--paths", &options.paths},
                                             {"--probes", &options.probes},         {"--samples", &options.samples},
                                             {"--spacing-mm", &options.spacing_mm}, {"--worst", &options.worst},
-                                            {"--bounce", &options.bounce}};
+                                            {"--bounces", &options.bounces}};
   for (std::size_t k = 0; k < arguments.size(); ++k) {
     const auto number = numbers.find(arguments[k]);
     if (number == numbers.end()) {
@@ -232,7 +236,8 @@ int run(const std::vector<std::string>& arguments) {
   if (options.texels < 2) throw std::runtime_error("--texels: at least 2, or no standard error can be told");
   if (scenes.empty()) {
     throw std::runtime_error(
-        "usage: light_judge [--texels N] [--paths N] [--probes N] [--samples N] [--spacing-mm N] [--worst N] [--bounce N] SCENE...");
+        "usage: light_judge [--texels N] [--paths N] [--probes N] [--samples N] [--spacing-mm N] [--worst N] "
+        "[--bounces N] SCENE...");
   }
   for (const std::filesystem::path& scene : scenes) judge(scene, options);
   return 0;

@@ -46,12 +46,7 @@ class EdgeSamplerTest : public test::GpuTest {
     FrameRenderer renderer(device, store, {{extent, 2, aov, samples}, kFormat});
     constexpr VkImageUsageFlags kUsage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
     const Image image(device, {kFormat, extent, 2, kUsage});
-    FrameTarget target;
-    target.image = image.handle();
-    target.format = kFormat;
-    target.extent = extent;
-    target.layers = 2;
-    target.final_layout = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
+    const FrameTarget target = test::frame_target(image, kFormat, extent);
     // Twice: the second frame's list must not hold the first one's pixels.
     for (int frame = 0; frame < 2; ++frame) {
       renderer.record(target);

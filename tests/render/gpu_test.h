@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "render/device.h"
+#include "render/frame_renderer.h"
+#include "render/image.h"
 
 namespace probewalk::test {
 
@@ -15,5 +17,16 @@ class GpuTest : public testing::Test {
   }
   const Device device{DeviceHooks{}, DeviceOptions{.device = "", .validation = true}};
 };
+
+// Both eyes' layers of an image, to be read back from.
+inline FrameTarget frame_target(const Image& image, VkFormat format, VkExtent2D extent_px) {
+  FrameTarget target;
+  target.image = image.handle();
+  target.format = format;
+  target.extent = extent_px;
+  target.layers = 2;
+  target.final_layout = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
+  return target;
+}
 
 }  // namespace probewalk::test

@@ -37,13 +37,7 @@ class GuidePassTest : public test::GpuTest {
         FrameRendererOptions{.tracer = {.extent_px = kExtent, .views = 2, .aov = aov}, .target_format = kFormat});
   }
   FrameTarget target() const {
-    FrameTarget target;
-    target.image = image.handle();
-    target.format = kFormat;
-    target.extent = kExtent;
-    target.layers = 2;
-    target.final_layout = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
-    return target;
+    return test::frame_target(image, kFormat, kExtent);
   }
   // Two eyes whose fields of view mirror each other.
   static std::vector<ViewConstants> eyes_at(glm::dvec3 head_m, double yaw_rad, double pitch_rad) {

@@ -120,12 +120,7 @@ class HiddenTilesOnDevice : public test::GpuTest {
   Drawn draw(FrameRenderer& renderer, VkExtent2D extent = kExtent) {
     const Image image(device,
                       {kFormat, kExtent, 2, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT});
-    FrameTarget target;
-    target.image = image.handle();
-    target.format = kFormat;
-    target.extent = extent;
-    target.layers = 2;
-    target.final_layout = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
+    const FrameTarget target = test::frame_target(image, kFormat, extent);
     FrameSettings settings;
     settings.trace = default_dials(test::kRadianceScale);
     renderer.record(target);

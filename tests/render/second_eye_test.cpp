@@ -278,12 +278,7 @@ TEST_F(ClosePost, IsSeenWhereTheFirstEyesLensHidesItsLeftEdge) {
     renderer.hide({of_first, corner});
     FrameSettings settings;
     settings.trace = default_dials(test::kRadianceScale);
-    FrameTarget target;
-    target.image = image.handle();
-    target.format = kFormat;
-    target.extent = kExtent;
-    target.layers = 2;
-    target.final_layout = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
+    const FrameTarget target = test::frame_target(image, kFormat, kExtent);
     renderer.record(target);
     renderer.write(views, settings);
     renderer.submit();

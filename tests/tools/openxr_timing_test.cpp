@@ -248,9 +248,9 @@ TEST(OpenXrTiming, AStallOfTheRuntimeIsFoundInTheCallThatStalled) {
                                                                {"xrEndFrame", "end"}};
   std::string names;
   for (const auto& [call, stage] : calls) names += (names.empty() ? "" : ",") + call;
-  const LayerWalk run = walk_behind_layer("stalls", "stall_ms=160;stall_every=6;stall=" + names, "--frames 100");
+  const LayerWalk run = walk_behind_layer("stalls", "stall_ms=160;stall_every=6;stall=" + names, "--frames 190");
   const auto& frames = run.walk.frames;
-  ASSERT_EQ(frames.size(), 100u);
+  ASSERT_EQ(frames.size(), 190u);
   const std::vector<WorstFrame> worst = worst_frames(frames, 3, true, frames.size());
   const auto length = [](const Interval& interval) { return ms(interval.end - interval.begin); };
   const auto took_ms = [&](std::size_t i, const std::string& stage) {
@@ -289,13 +289,8 @@ TEST(OpenXrTiming, AStallOfTheRuntimeIsFoundInTheCallThatStalled) {
     std::printf("  %-22s %6.1f ms %7.1f ms %7.2f ms  %zu of %zu: %s\n", call.c_str(), median(injected), median(found),
                 noise_ms, named, found.size(), cause.c_str());
     EXPECT_GE(median(injected), 160.0) << call;
-    // What the machine takes from us while a stalled call comes back is found with it, and only ever adds: the frame that
-    // it took least from is exact, the others within a twentieth.
     // A wait is what the runtime makes of the time left, so that it gives back a part of what it takes longer.
-    const double tolerance_ms = stage == "wait" ? 80.0 + noise_ms : 1.0 + 1.5 * noise_ms;
-    EXPECT_LE(std::abs(*std::ranges::min_element(wrong, {}, [](double each) { return std::abs(each); })), tolerance_ms)
-        << call;
-    EXPECT_NEAR(median(wrong), 0.0, tolerance_ms + 160.0 / 20) << call;
+    EXPECT_NEAR(median(wrong), 0.0, stage == "wait" ? 80.0 + noise_ms : 1.0 + 1.5 * noise_ms) << call;
     EXPECT_GE(named + 1, found.size()) << call;
     EXPECT_GE(found.size(), 3u);
   }
