@@ -13,7 +13,7 @@
 namespace probewalk {
 namespace {
 
-constexpr int kRaysPerPick = 8;   // over the hemisphere, to one to an emitter
+constexpr int kRaysPerPick = 4;   // over the hemisphere, to one to an emitter
 constexpr int kGuessBatches = 4;  // that tell the noise of a guess
 
 }  // namespace

@@ -14,8 +14,10 @@ namespace {
 using Values = LightGather::Values;
 
 constexpr int kHalvings = 3;  // of the spacing, as narrow places have
-// Light is only guessed here: as much as tells where it changes.
-constexpr int kFirstRays = 96, kSecondRays = 48;
+// Light is only guessed here, as much as tells where it changes: by this share of the rays that it will be gathered
+// with, half as many for the second bounce, within limits.
+constexpr float kGuessShare = 0.375f;
+constexpr int kLeastGuessRays = 16, kMostGuessRays = 96;
 constexpr std::uint32_t kFirstPass = 101, kSecondPass = 102;
 // Neighbours may be off by this share of the light at a point. They stand a spacing off; what lies between points is
 // nearer to the next.
@@ -34,8 +36,12 @@ float coarse_scale(double mean) {
 
 class Refinement {
  public:
-  Refinement(LightGather& gather, CachePoints& points, Progress& progress)
-      : points_(points), progress_(progress), gather_(gather) {
+  Refinement(LightGather& gather, int first_rays, CachePoints& points, Progress& progress)
+      : points_(points),
+        progress_(progress),
+        gather_(gather),
+        first_rays_(first_rays),
+        guess_rays_(std::clamp(int(kGuessShare * static_cast<float>(first_rays)), kLeastGuessRays, kMostGuessRays)) {
     guess(0);
     double sum = 0.0;
     for (const CachedLight& cached : cached_) sum += strongest_channel(cached.lux);
@@ -46,13 +52,13 @@ class Refinement {
   void guess(std::size_t first) {
     progress_.begin("light cache points", 3 * (points_.size() - first), "points");
     gather_.direct(direct_, first);
-    gather_.guess(direct_, kFirstRays, kFirstPass, once_, &emitted_, &deviations_, first);
+    gather_.guess(direct_, guess_rays_, kFirstPass, once_, &emitted_, &deviations_, first);
     source_.resize(points_.size());
     for (std::size_t k = first; k < points_.size(); ++k) {
       source_[k] = once_[k];
       source_[k] += emitted_[k];
     }
-    gather_.guess(source_, kSecondRays, kSecondPass, twice_, nullptr, nullptr, first);
+    gather_.guess(source_, guess_rays_ / 2, kSecondPass, twice_, nullptr, nullptr, first);
     cached_.resize(points_.size());
     for (std::size_t k = first; k < points_.size(); ++k) {
       cached_[k] = source_[k];
@@ -87,14 +93,14 @@ class Refinement {
     std::stable_sort(off.begin(), off.end(), [&](std::uint32_t a, std::uint32_t b) { return errors_[a] > errors_[b]; });
     return off;
   }
-  // How many times so many rays bring the standard error of the first bounce below kNoise. By other rays than those
+  // How many times first_rays bring the standard error of the first bounce below kNoise. By other rays than those
   // that will be cast: to go on where what was found so far is noisy would stop early where nothing was found.
-  std::vector<std::uint8_t> times_rays(int rays) const {
+  std::vector<std::uint8_t> times_rays() const {
     std::vector<std::uint8_t> times(points_.size());
     for (std::size_t k = 0; k < points_.size(); ++k) {
       const float light = std::max(strongest_channel(source_[k].lux), dark_lux_);
       const float ratio = light > 0.0f ? deviations_[k] / (kNoise * light) : 0.0f;
-      const float wanted = static_cast<float>(kFirstRays) * ratio * ratio / static_cast<float>(rays);
+      const float wanted = static_cast<float>(guess_rays_) * ratio * ratio / static_cast<float>(first_rays_);
       times[k] = static_cast<std::uint8_t>(std::clamp(std::ceil(wanted), 1.0f, kMostTimes));
     }
     return times;
@@ -105,6 +111,7 @@ class Refinement {
   CachePoints& points_;
   Progress& progress_;
   LightGather& gather_;
+  const int first_rays_, guess_rays_;
   Values direct_, emitted_, once_, source_, twice_, cached_;
   std::vector<float> errors_, deviations_;
   float dark_lux_ = 0.0f;
@@ -116,7 +123,7 @@ LightRefinement refine_points(const Scene& scene, const RayScene& rays, LightGat
                               CachePoints& points, Progress& progress) {
   LightRefinement result;
   const std::size_t before = points.size(), most = std::max(before / 2, std::min(2 * before, kFewPoints));
-  Refinement refinement(gather, points, progress);
+  Refinement refinement(gather, first_rays, points, progress);
   refinement.measure();
   result.error_before = result.error_after = refinement.told_error();
   for (int halving = 1; halving <= kHalvings && points.size() < before + most; ++halving) {
@@ -133,7 +140,7 @@ LightRefinement refine_points(const Scene& scene, const RayScene& rays, LightGat
   }
   result.added = points.size() - before;
   result.direct = refinement.take_direct();
-  result.times_rays = refinement.times_rays(first_rays);
+  result.times_rays = refinement.times_rays();
   return result;
 }
 
