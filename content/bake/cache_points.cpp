@@ -138,15 +138,43 @@ glm::vec3 CachePoints::interpolate_seen(const std::vector<CachedLight>& values, 
   if (weights > kVanishing) return sum / weights;
   sum = glm::vec3(0.0f), weights = 0.0f;
   for_each_weight(position_m, normal, [&](std::uint32_t point, float, float blocked) {
-    const Point& p = points_[point];
-    if (!(blocked > 0.0f)) return;
-    const float height_m = look_height_m(p);
-    const glm::vec3 from = position_m + normal * height_m, to = p.position_m + p.geometric_normal * height_m;
-    if (rays.occluded(from, to - from, 0.0f, 1.0f)) return;
-    sum += values[point].at(normal - p.normal) * blocked;
+    if (!(blocked > 0.0f) || !sees(point, position_m, normal, rays)) return;
+    sum += values[point].at(normal - points_[point].normal) * blocked;
     weights += blocked;
   });
   return weights > kVanishing ? sum / weights : glm::vec3(0.0f);
+}
+
+bool CachePoints::sees(std::uint32_t point, glm::vec3 position_m, glm::vec3 normal, const RayScene& rays) const {
+  const Point& p = points_[point];
+  const float height_m = look_height_m(p);
+  const glm::vec3 from = position_m + normal * height_m, to = p.position_m + p.geometric_normal * height_m;
+  return !rays.occluded(from, to - from, 0.0f, 1.0f);
+}
+
+std::optional<std::uint32_t> CachePoints::one_seen(glm::vec3 position_m, glm::vec3 normal, const RayScene& rays,
+                                                   float choice) const {
+  thread_local std::vector<std::pair<std::uint32_t, float>> shares;
+  shares.clear();
+  float sum = for_each_weight(position_m, normal, [&](std::uint32_t point, float open, float) {
+    if (open > 0.0f) shares.emplace_back(point, open);
+  });
+  if (!(sum > kVanishing)) {
+    shares.clear();
+    sum = 0.0f;
+    for_each_weight(position_m, normal, [&](std::uint32_t point, float, float blocked) {
+      if (!(blocked > 0.0f) || !sees(point, position_m, normal, rays)) return;
+      shares.emplace_back(point, blocked);
+      sum += blocked;
+    });
+    if (!(sum > kVanishing)) return {};
+  }
+  float left = choice * sum;
+  for (const auto& [point, share] : shares) {
+    left -= share;
+    if (left < 0.0f) return point;
+  }
+  return shares.back().first;
 }
 
 std::optional<glm::vec3> CachePoints::by_others(const std::vector<CachedLight>& values, std::size_t k) const {

@@ -51,6 +51,9 @@ class CachePoints {
   // where none does, as within walls, where few rays stray.
   glm::vec3 interpolate_seen(const std::vector<CachedLight>& values, glm::vec3 position_m, glm::vec3 normal,
                              const RayScene& rays) const;
+  // One of the points that interpolate_seen() goes by, each by its share; chosen by a number of [0, 1).
+  std::optional<std::uint32_t> one_seen(glm::vec3 position_m, glm::vec3 normal, const RayScene& rays,
+                                        float choice) const;
   // What the others around say of the irradiance at a point; nothing where none sees it.
   std::optional<glm::vec3> by_others(const std::vector<CachedLight>& values, std::size_t k) const;
   // The mean of the values around a point, its own among them.
@@ -87,6 +90,7 @@ class CachePoints {
   void look_around(const RayScene& rays, std::size_t first, Progress& progress);
   void build_levels();
   float look_height_m(const Point& point) const;
+  bool sees(std::uint32_t point, glm::vec3 position_m, glm::vec3 normal, const RayScene& rays) const;
   float open_fraction(const Point& point, glm::vec3 offset, float tangential_m) const;
   static constexpr std::uint32_t kNobody = ~0u;
   // Calls visit(point, weight if it sees the place, weight if it need not); returns the sum of the former.

@@ -18,10 +18,10 @@
 namespace probewalk {
 
 // Raised when the same scene and options get other light, lest a bake go on from what an earlier baker has kept.
-inline constexpr int kLightVersion = 2;
+inline constexpr int kLightVersion = 3;
 
 struct LightOptions {
-  int bounces = 4;    // of indirect light
+  int bounces = 1;    // gathered one by one; all that come after are gathered together. 0: none at all
   int samples = 128;  // rays a cache point and bounce
   double cache_spacing_m = 0.25;
   std::uint32_t seed = 1;

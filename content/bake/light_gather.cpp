@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "content/bake/patterns.h"
+#include "content/bake/point_transport.h"
 #include "content/bake/surface_point.h"
 #include "content/error.h"
 
@@ -39,7 +40,7 @@ void LightGather::direct(Values& values, std::size_t first) {
 }
 
 void LightGather::reflected(const Values& source, int samples, std::uint32_t pass, Values& values, Values* emitted,
-                            PointSets* sets, const std::vector<std::uint8_t>* times) {
+                            const std::vector<std::uint8_t>* times) {
   values.resize(points_.size());
   if (emitted) emitted->resize(points_.size());
   for_each_point(0, [&](std::size_t k) {
@@ -47,7 +48,7 @@ void LightGather::reflected(const Values& source, int samples, std::uint32_t pas
     const std::uint32_t batches = times ? std::max<std::uint32_t>((*times)[k], 1) : 1;
     Batch sum;
     for (std::uint32_t b = 0; b < batches; ++b) {
-      gather_batch(k, source, samples, b == 0 ? turn : mix_bits(b, turn), emitted != nullptr, sets, sum);
+      gather_batch(k, source, samples, b == 0 ? turn : mix_bits(b, turn), emitted != nullptr, sum);
     }
     values[k] = sum.reflected * (1.0f / static_cast<float>(batches));
     if (emitted) (*emitted)[k] = sum.emitted * (1.0f / static_cast<float>(batches));
@@ -65,8 +66,7 @@ void LightGather::guess(const Values& source, int samples, std::uint32_t pass, V
     float squares = 0.0f;  // of the brightness of each batch
     for (std::uint32_t b = 0; b < kGuessBatches; ++b) {
       Batch batch;
-      gather_batch(k, source, std::max(samples / kGuessBatches, 1), mix_bits(b, turn), emitted != nullptr, nullptr,
-                   batch);
+      gather_batch(k, source, std::max(samples / kGuessBatches, 1), mix_bits(b, turn), emitted != nullptr, batch);
       sum.reflected += batch.reflected;
       sum.emitted += batch.emitted;
       squares += batch.brightness() * batch.brightness();
@@ -79,6 +79,12 @@ void LightGather::guess(const Values& source, int samples, std::uint32_t pass, V
   });
 }
 
+std::vector<glm::vec3> LightGather::reflected_for_ever(const Values& source, int samples) {
+  const PointTransport transport(scene_, rays_, points_, samples, seed_, progress_);
+  rays_cast_ += transport.rays_cast();
+  return transport.reflected(source);
+}
+
 LightGather::Values LightGather::smooth(const Values& values) const {
   Values smoothed(points_.size());
   tbb::parallel_for(std::size_t(0), points_.size(),
@@ -87,7 +93,7 @@ LightGather::Values LightGather::smooth(const Values& values) const {
 }
 
 void LightGather::gather_batch(std::size_t k, const Values& source, int samples, std::uint32_t turn, bool with_emitted,
-                               PointSets* sets, Batch& batch) {
+                               Batch& batch) {
   const CachePoints::Point& point = points_[k];
   glm::vec3 tangent, bitangent;
   tangent_frame(point.normal, tangent, bitangent);
@@ -118,9 +124,6 @@ void LightGather::gather_batch(std::size_t k, const Values& source, int samples,
     }
     sum.add(surface.albedo * points_.interpolate_seen(source, surface.position_m, surface.normal, rays_), direction,
             point.normal);
-    if (!sets) continue;
-    points_.for_each_seen(surface.position_m, surface.normal,
-                          [&](std::uint32_t p) { sets->join(std::uint32_t(k), p); });
   }
   for (int s = 0; s < picks; ++s) {
     const GatheredEmitters::Sample sample =

@@ -11,7 +11,6 @@
 #include "content/bake/cached_light.h"
 #include "content/bake/direct_light.h"
 #include "content/bake/gathered_emitters.h"
-#include "content/bake/point_sets.h"
 #include "content/progress.h"
 #include "content/scene/ray_scene.h"
 #include "content/scene/scene.h"
@@ -39,10 +38,12 @@ class LightGather {
   // What arrives straight from the emitters.
   void direct(Values& values, std::size_t first = 0);
   // What `source`, reflected once, sends to the points, by so many rays each. emitted receives what sky and surfaces
-  // send by themselves, as far as it is not sampled directly; in sets points are joined that light passes between;
-  // times: how many times the rays, by point. All three may be null. pass: chooses other directions.
-  void reflected(const Values& source, int samples, std::uint32_t pass, Values& values, Values* emitted,
-                 PointSets* sets, const std::vector<std::uint8_t>* times = nullptr);
+  // send by themselves, as far as it is not sampled directly; times: how many times the rays, by point. Both may be
+  // null. pass: chooses other directions.
+  void reflected(const Values& source, int samples, std::uint32_t pass, Values& values, Values* emitted = nullptr,
+                 const std::vector<std::uint8_t>* times = nullptr);
+  // What becomes of `source` by all reflections together (lux), found from point to point by so many rays each.
+  std::vector<glm::vec3> reflected_for_ever(const Values& source, int samples);
   // The same by few rays, and how far off it may be: deviations receives standard errors (lux), or is null.
   void guess(const Values& source, int samples, std::uint32_t pass, Values& values, Values* emitted,
              std::vector<float>* deviations, std::size_t first);
@@ -60,7 +61,7 @@ class LightGather {
   };
   // Adds to the batch.
   void gather_batch(std::size_t k, const Values& source, int samples, std::uint32_t turn, bool with_emitted,
-                    PointSets* sets, Batch& batch);
+                    Batch& batch);
 
   const Scene& scene_;
   const RayScene& rays_;

@@ -201,7 +201,8 @@ void add_bake_command(CLI::App& app, CommonOptions& common) {
   command->add_option("--samples", bake.light.samples, "Rays a point and bounce of indirect light; more is smoother")
       ->check(CLI::Range(8, 65536))->capture_default_str();
   command->add_option("--bounces", bake.light.bounces,
-                      "Bounces of indirect light that are followed; what would come after is extrapolated")
+                      "Bounces of indirect light that are gathered one by one; all that follow are gathered together. 0: "
+                      "nothing is reflected")
       ->check(CLI::Range(0, 64))->capture_default_str();
   command->add_option("--seed", bake.light.seed, "Turns the sampling patterns of indirect light")->capture_default_str();
   command->add_option(

@@ -52,6 +52,38 @@ TEST(LightField, FillsAFurnaceEvenly) {
   }
 }
 
+// A lamp at the end of a long white room: light is reflected dozens of times before it is at the other end. All that is
+// absorbed must be all that was sent.
+TEST(LightField, KeepsTheEnergyOfALongWhiteRoom) {
+  constexpr float kAlbedo = 0.92f, kLamp_cd = 100.0f;
+  const glm::vec3 size_m(2.0f, 2.0f, 14.0f);
+  Scene scene;
+  plain::add_material(scene, glm::vec3(kAlbedo));
+  plain::add_box(scene, glm::vec3(0.0f), size_m, 0);
+  scene.lights.push_back(plain::point_light({1.0f, 1.0f, 0.7f}, kLamp_cd));
+  const RayScene rays(scene);
+  SilentProgress progress;
+  const LightField light(scene, rays, LightOptions(), progress);
+  double absorbed_lm = 0.0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+    for (const bool far : {false, true}) {
+      constexpr int kPlaces = 1000;
+      double sum = 0.0;
+      for (int k = 0; k < kPlaces; ++k) {
+        const glm::vec2 at = r2_sequence(std::uint32_t(k));
+        glm::vec3 from(0.0f), to(0.0f);
+        from[u] = at.x * size_m[u], from[v] = at.y * size_m[v], from[axis] = far ? size_m[axis] - 0.01f : 0.01f;
+        to[axis] = far ? 1.0f : -1.0f;
+        sum += double(light.along(from, to, 1e-3f).r);
+      }
+      const double arriving_lux = sum / kPlaces * std::numbers::pi / double(kAlbedo);
+      absorbed_lm += double(1.0f - kAlbedo) * arriving_lux * double(size_m[u] * size_m[v]);
+    }
+  }
+  EXPECT_NEAR(absorbed_lm / (4.0 * std::numbers::pi * double(kLamp_cd)), 1.0, 0.02);
+}
+
 TEST(LightField, LightsAPlaneByAPointExactly) {
   Scene scene;
   plain::add_material(scene, glm::vec3(0.6f));
