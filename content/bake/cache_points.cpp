@@ -11,6 +11,7 @@
 
 #include "content/bake/patterns.h"
 #include "content/bake/point_scatter.h"
+#include "content/bake/surface_point.h"
 #include "content/error.h"
 #include "content/pack/pack_io.h"
 
@@ -63,6 +64,7 @@ void CachePoints::look_around(const RayScene& rays, std::size_t first, Progress&
   tbb::parallel_for(first, points_.size(), [&](std::size_t k) {
     if (progress.cancelled()) return;
     Point& point = points_[k];
+    look_up(rays, point);
     const glm::vec3 n = point.geometric_normal;
     glm::vec3 tangent, bitangent;
     tangent_frame(point.normal, tangent, bitangent);
@@ -76,11 +78,18 @@ void CachePoints::look_around(const RayScene& rays, std::size_t first, Progress&
     }
   });
   if (progress.cancelled()) throw Interrupted("interrupted while lighting; nothing of it is kept");
-  rays_cast_ += (points_.size() - first) * kSectors;
+  rays_cast_ += (points_.size() - first) * (kSectors + 1);
+}
+
+void CachePoints::look_up(const RayScene& rays, Point& point) const {
+  const float heard_m = kReachPerSpacing * point.spacing_m / kOffPlane;
+  const glm::vec3 from = point.position_m + point.geometric_normal * ray_offset_m(point.position_m);
+  const SurfaceHit hit = rays.closest(from, point.geometric_normal, 0.0f, heard_m);
+  point.cover_m = hit.hit ? hit.t : kNoCover;
 }
 
 float CachePoints::look_height_m(const Point& point) const {
-  return kLookHeight_m * point.spacing_m / spacing_m_;
+  return std::min(kLookHeight_m * point.spacing_m / spacing_m_, 0.5f * point.cover_m);
 }
 
 void CachePoints::build_levels() {
@@ -202,7 +211,7 @@ CachedLight CachePoints::mean_around(const std::vector<CachedLight>& values, std
 }
 
 std::uint64_t CachePoints::identity(std::size_t k) const {
-  static_assert(sizeof(Point) == 10 * sizeof(float) + kSectors, "no padding");
+  static_assert(sizeof(Point) == 11 * sizeof(float) + kSectors, "no padding");
   return short_hash(std::as_bytes(std::span(&points_[k], 1)));
 }
 

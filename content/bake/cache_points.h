@@ -23,12 +23,16 @@ namespace probewalk {
 class CachePoints {
  public:
   static constexpr float kOffPlane = 6.0f;  // distance across the surface counts this much more than along it
+  static constexpr float kNoCover = 1e30f;
   static constexpr int kSectors = 32;       // fine enough to see along a strip as narrow as a door frame
   struct Point {
     glm::vec3 position_m{0.0f};
     glm::vec3 normal{0.0f};  // unit; shading normal of its side
     glm::vec3 geometric_normal{0.0f};
     float spacing_m = 0.0f;  // to the others around; its reach grows with it
+    // How far before the surface something covers it (a picture on a wall), where that is so near that the point could
+    // be heard beyond.
+    float cover_m = kNoCover;
     // How near the surface around is closed, by direction: kNearSteps * reach / free way; 0 = open. The reciprocal is
     // what interpolates well: along a straight wall it is affine in the direction.
     std::array<std::uint8_t, kSectors> nearness{};
@@ -89,6 +93,7 @@ class CachePoints {
 
   void look_around(const RayScene& rays, std::size_t first, Progress& progress);
   void build_levels();
+  void look_up(const RayScene& rays, Point& point) const;
   float look_height_m(const Point& point) const;
   bool sees(std::uint32_t point, glm::vec3 position_m, glm::vec3 normal, const RayScene& rays) const;
   float open_fraction(const Point& point, glm::vec3 offset, float tangential_m) const;
@@ -123,7 +128,7 @@ float CachePoints::for_each_weight(glm::vec3 position_m, glm::vec3 normal, Visit
       const float along_m = std::sqrt(std::max(straight_square - across * across, 0.0f));
       const float kernel = (1.0f - square) * (1.0f - square);
       const float turned = (facing - kLeastFacing) / (1.0f - kLeastFacing);
-      const float blocked = kernel * turned * turned, open = blocked * open_fraction(point, offset, along_m);
+      const float blocked = kernel * turned * turned, open = across < point.cover_m ? blocked * open_fraction(point, offset, along_m) : 0.0f;
       visit(member.point, share * open, share * blocked);
       sum += share * open;
       left -= open;

@@ -13,6 +13,8 @@ Model make_two_rooms();
 Model make_lattice();
 Model make_grove();
 Model make_foliage();
+// Grass of about so many triangles, in tufts that share their meshes.
+Model make_meadow(std::size_t triangles);
 
 // A furnished building of that many rooms on two storeys, made of placed variants; 20 or 200.
 Model make_building(int rooms);

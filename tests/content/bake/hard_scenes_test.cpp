@@ -159,7 +159,7 @@ TEST_P(HardProceduralScenes, EndInAGoodPackOrAStatement) {
 
 INSTANTIATE_TEST_SUITE_P(All, HardProceduralScenes,
                          testing::Values("boxed-lattice", "corridor", "star-room", "lattice", "closed-cells",
-                                         "triangles-1e5"),
+                                         "triangles-1e5", "meadow-1e5"),
                          [](const auto& scene) {
                            std::string name = scene.param;
                            std::erase(name, '-');

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "content/bake/bake_probe.h"
+#include "content/bake/cache_points.h"
 #include "content/bake/light_field.h"
 #include "content/bake/patterns.h"
 #include "content/bake/plain_scenes.h"
@@ -343,6 +344,35 @@ TEST(LightField, AgreesWithPathsThatAreFollowed) {
   ASSERT_GT(count, 30);
   EXPECT_NEAR(sum_cached / sum_followed, 1.0, 0.03) << "energy";
   EXPECT_LT(error / count, 0.05) << "mean error of a direction, noise of the followed paths included";
+}
+
+// What a picture covers is dark, and must not be heard before it, as near as it hangs: neither where points are close nor
+// where they are not.
+TEST(LightField, WhatAPictureCoversDoesNotDarkenIt) {
+  for (const float off_m : {0.018f, 0.025f, 0.04f}) {
+    Scene scene;
+    plain::add_material(scene, glm::vec3(0.7f));
+    plain::add_box(scene, {-2, 0, -2}, {2, 3, 2}, 0);
+    const float z = -2.0f + off_m;
+    plain::add_quad(scene, {-0.8f, 0.9f, z}, {0.8f, 0.9f, z}, {0.8f, 2.1f, z}, {-0.8f, 2.1f, z}, 0);
+    const RayScene rays(scene);
+    SilentProgress progress;
+    const CachePoints points(scene, rays, 0.25, 100000, progress);
+    std::vector<CachedLight> lit(points.size());
+    int covered = 0;
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      const glm::vec3 at = points[k].position_m;
+      const bool behind = at.z < z - 1e-4f && std::abs(at.x) < 0.8f && std::abs(at.y - 1.5f) < 0.6f;
+      lit[k].lux = glm::vec3(behind ? 0.0f : 1.0f);
+      covered += behind && points[k].normal.z > 0.5f;
+    }
+    EXPECT_GT(covered, 0) << off_m << " m before the wall";
+    for (int k = 0; k < 256; ++k) {
+      const glm::vec2 at = r2_sequence(std::uint32_t(k));
+      const glm::vec3 place(1.5f * (at.x - 0.5f), 0.95f + 1.1f * at.y, z);
+      EXPECT_NEAR(points.interpolate(lit, place, {0, 0, 1}).r, 1.0f, 1e-3f) << off_m << " m before the wall";
+    }
+  }
 }
 
 // A slot four times as deep as it is high, far narrower than the cache's spacing: light decays within it as fast as it is
