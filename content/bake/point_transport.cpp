@@ -3,6 +3,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <optional>
 
@@ -28,6 +29,7 @@ PointTransport::PointTransport(const Scene& scene, const RayScene& rays, const C
       ends_(std::size_t(rays_per_point_) * points.size()) {
   const auto count = static_cast<std::uint32_t>(rays_per_point_);
   PointSets parts(points.size());
+  std::atomic<std::uint64_t> done{0};
   tbb::parallel_for(std::size_t(0), points.size(), [&](std::size_t k) {
     if (progress.cancelled()) return;
     const CachePoints::Point& point = points[k];
@@ -49,6 +51,7 @@ PointTransport::PointTransport(const Scene& scene, const RayScene& rays, const C
       ends_[k * count + s] = {*end, surface.albedo};
       parts.join(std::uint32_t(k), *end);
     }
+    if (++done % 1024 == 0) progress.advance(1024);
   });
   if (progress.cancelled()) throw Interrupted("interrupted while lighting; nothing of it is kept");
   first_of_.resize(points.size());
