@@ -145,20 +145,26 @@ glm::vec3 CachePoints::interpolate_seen(const std::vector<CachedLight>& values, 
     if (open > 0.0f) sum += values[point].at(normal - points_[point].normal) * open;
   });
   if (weights > kVanishing) return sum / weights;
-  sum = glm::vec3(0.0f), weights = 0.0f;
-  for_each_weight(position_m, normal, [&](std::uint32_t point, float, float blocked) {
-    if (!(blocked > 0.0f) || !sees(point, position_m, normal, rays)) return;
-    sum += values[point].at(normal - points_[point].normal) * blocked;
-    weights += blocked;
+  sum = glm::vec3(0.0f);
+  weights = for_each_by_rays(position_m, normal, rays, [&](std::uint32_t point, float weight) {
+    sum += values[point].at(normal - points_[point].normal) * weight;
   });
   return weights > kVanishing ? sum / weights : glm::vec3(0.0f);
 }
 
-bool CachePoints::sees(std::uint32_t point, glm::vec3 position_m, glm::vec3 normal, const RayScene& rays) const {
-  const Point& p = points_[point];
-  const float height_m = look_height_m(p);
-  const glm::vec3 from = position_m + normal * height_m, to = p.position_m + p.geometric_normal * height_m;
-  return !rays.occluded(from, to - from, 0.0f, 1.0f);
+template <typename Visit>
+float CachePoints::for_each_by_rays(glm::vec3 position_m, glm::vec3 normal, const RayScene& rays, Visit&& visit) const {
+  float sum = 0.0f;
+  for_each_weight(position_m, normal, [&](std::uint32_t point, float, float blocked) {
+    if (!(blocked > 0.0f)) return;
+    const Point& p = points_[point];
+    const float height_m = look_height_m(p);
+    const glm::vec3 from = position_m + normal * height_m, to = p.position_m + p.geometric_normal * height_m;
+    if (rays.occluded(from, to - from, 0.0f, 1.0f)) return;
+    visit(point, blocked);
+    sum += blocked;
+  });
+  return sum;
 }
 
 std::optional<std::uint32_t> CachePoints::one_seen(glm::vec3 position_m, glm::vec3 normal, const RayScene& rays,
@@ -170,12 +176,8 @@ std::optional<std::uint32_t> CachePoints::one_seen(glm::vec3 position_m, glm::ve
   });
   if (!(sum > kVanishing)) {
     shares.clear();
-    sum = 0.0f;
-    for_each_weight(position_m, normal, [&](std::uint32_t point, float, float blocked) {
-      if (!(blocked > 0.0f) || !sees(point, position_m, normal, rays)) return;
-      shares.emplace_back(point, blocked);
-      sum += blocked;
-    });
+    sum = for_each_by_rays(position_m, normal, rays,
+                           [&](std::uint32_t point, float weight) { shares.emplace_back(point, weight); });
     if (!(sum > kVanishing)) return {};
   }
   float left = choice * sum;

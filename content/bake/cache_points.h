@@ -24,7 +24,7 @@ class CachePoints {
  public:
   static constexpr float kOffPlane = 6.0f;  // distance across the surface counts this much more than along it
   static constexpr float kNoCover = 1e30f;
-  static constexpr int kSectors = 32;       // fine enough to see along a strip as narrow as a door frame
+  static constexpr int kSectors = 32;  // fine enough to see along a strip as narrow as a door frame
   struct Point {
     glm::vec3 position_m{0.0f};
     glm::vec3 normal{0.0f};  // unit; shading normal of its side
@@ -51,8 +51,8 @@ class CachePoints {
 
   // Irradiance (lux) by values (one per point) at a surface position with unit normal. Thread-safe.
   glm::vec3 interpolate(const std::vector<CachedLight>& values, glm::vec3 position_m, glm::vec3 normal) const;
-  // The same from points that see the place alone, which rays decide where none is known to: things stand about it. Black
-  // where none does, as within walls, where few rays stray.
+  // The same from points that see the place alone, which rays decide where none is known to: things stand about it.
+  // Black where none does, as within walls, where few rays stray.
   glm::vec3 interpolate_seen(const std::vector<CachedLight>& values, glm::vec3 position_m, glm::vec3 normal,
                              const RayScene& rays) const;
   // One of the points that interpolate_seen() goes by, each by its share; chosen by a number of [0, 1).
@@ -62,16 +62,13 @@ class CachePoints {
   std::optional<glm::vec3> by_others(const std::vector<CachedLight>& values, std::size_t k) const;
   // The mean of the values around a point, its own among them.
   CachedLight mean_around(const std::vector<CachedLight>& values, std::size_t k) const;
-  // Calls visit(point) for each point whose value counts there; returns whether any of them sees the place.
-  template <typename Visit>
-  bool for_each_seen(glm::vec3 position_m, glm::vec3 normal, Visit&& visit) const {
-    return for_each_weight(position_m, normal, [&](std::uint32_t point, float open, float) {
-             if (open > 0.0f) visit(point);
-           }) > kVanishing;
-  }
+  // Calls visit(point) for each point whose value counts there.
   template <typename Visit>
   void for_each_used(glm::vec3 position_m, glm::vec3 normal, Visit&& visit) const {
-    if (for_each_seen(position_m, normal, visit)) return;
+    const float seen = for_each_weight(position_m, normal, [&](std::uint32_t point, float open, float) {
+      if (open > 0.0f) visit(point);
+    });
+    if (seen > kVanishing) return;
     for_each_weight(position_m, normal, [&](std::uint32_t point, float, float) { visit(point); });
   }
 
@@ -95,12 +92,15 @@ class CachePoints {
   void build_levels();
   void look_up(const RayScene& rays, Point& point) const;
   float look_height_m(const Point& point) const;
-  bool sees(std::uint32_t point, glm::vec3 position_m, glm::vec3 normal, const RayScene& rays) const;
   float open_fraction(const Point& point, glm::vec3 offset, float tangential_m) const;
   static constexpr std::uint32_t kNobody = ~0u;
   // Calls visit(point, weight if it sees the place, weight if it need not); returns the sum of the former.
   template <typename Visit>
   float for_each_weight(glm::vec3 position_m, glm::vec3 normal, Visit&& visit, std::uint32_t without = kNobody) const;
+
+  // Calls visit(point, weight) for the points that rays find to see the place; returns the sum of the weights.
+  template <typename Visit>
+  float for_each_by_rays(glm::vec3 position_m, glm::vec3 normal, const RayScene& rays, Visit&& visit) const;
 
   float spacing_m_ = 0.25f;
   std::uint64_t rays_cast_ = 0;
@@ -109,8 +109,7 @@ class CachePoints {
 };
 
 template <typename Visit>
-float CachePoints::for_each_weight(glm::vec3 position_m, glm::vec3 normal, Visit&& visit,
-                                   std::uint32_t without) const {
+float CachePoints::for_each_weight(glm::vec3 position_m, glm::vec3 normal, Visit&& visit, std::uint32_t without) const {
   if (levels_.empty()) return 0.0f;
   // The closer points speak first; the wider ones have what they leave: nothing where there are enough of them.
   const PointIndex::Found widest = levels_.front().index.at(position_m);
@@ -128,7 +127,8 @@ float CachePoints::for_each_weight(glm::vec3 position_m, glm::vec3 normal, Visit
       const float along_m = std::sqrt(std::max(straight_square - across * across, 0.0f));
       const float kernel = (1.0f - square) * (1.0f - square);
       const float turned = (facing - kLeastFacing) / (1.0f - kLeastFacing);
-      const float blocked = kernel * turned * turned, open = across < point.cover_m ? blocked * open_fraction(point, offset, along_m) : 0.0f;
+      const float blocked = kernel * turned * turned;
+      const float open = across < point.cover_m ? blocked * open_fraction(point, offset, along_m) : 0.0f;
       visit(member.point, share * open, share * blocked);
       sum += share * open;
       left -= open;

@@ -1,4 +1,4 @@
-// Indirect light: irradiance on the cache points, gathered on the cache points, interpolated anywhere on a surface.
+// Indirect light: irradiance gathered on the cache points, interpolated anywhere on a surface.
 #pragma once
 
 #include <glm/glm.hpp>

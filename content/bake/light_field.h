@@ -21,7 +21,7 @@ namespace probewalk {
 inline constexpr int kLightVersion = 3;
 
 struct LightOptions {
-  int bounces = 1;    // gathered one by one; all that come after are gathered together. 0: none at all
+  int bounces = 1;    // gathered one by one; all that follow are gathered together. 0: nothing is reflected
   int samples = 128;  // rays a cache point and bounce
   double cache_spacing_m = 0.25;
   std::uint32_t seed = 1;

@@ -93,11 +93,10 @@ std::vector<glm::vec3> PointTransport::reflected(const std::vector<CachedLight>&
     for (std::size_t k = 0; k < count; ++k) {
       Part& part = parts[k];
       if (part.done || first_of_[k] != k) continue;
-      part.done = reflection + 1 >= kMostReflections ||
-                  glm::all(glm::lessThanEqual(part.added, kEnough * part.all));
+      part.done = reflection + 1 >= kMostReflections || glm::all(glm::lessThanEqual(part.added, kEnough * part.all));
       all_done &= part.done;
     }
-    // The rest of the parts that are done now: a geometric series.
+    // The rest of the parts that are done now, a geometric series; nothing is left of those that were done before.
     for (std::size_t k = 0; k < count; ++k) {
       const Part& part = parts[first_of_[k]];
       if (!part.done) continue;

@@ -1,6 +1,6 @@
 // Where light goes that the cache points reflect, from point to point: what is left after the first bounces, which are
 // gathered with more rays, is followed here until nothing is left of it. A white room reflects light dozens of times,
-// and its slowest part fades last: to go on from the ratio of two early bounces leaves a tenth of the light out.
+// and its slowest part fades last: to go on from the ratio of two early bounces left 9 % of a hotel room's light out.
 #pragma once
 
 #include <cstddef>
@@ -24,7 +24,8 @@ class PointTransport {
   PointTransport(const Scene& scene, const RayScene& rays, const CachePoints& points, int rays_per_point,
                  std::uint32_t seed, Progress& progress);
 
-  // What the points get of `light` (lux, one a point) by all reflections together, light itself not among it. In every
+  // What the points get of `light` (one a point; its lux alone) by all reflections together, light itself not among it,
+  // in lux: until a reflection adds 0.2 %, and then by a constant ratio, or 400 of them. In every
   // part of the scene that no light leaves it ends by itself: a white room is not darker for a black one beside it, and
   // stays as it is when that is painted.
   std::vector<glm::vec3> reflected(const std::vector<CachedLight>& light) const;

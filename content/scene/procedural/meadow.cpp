@@ -23,13 +23,12 @@ double roll(std::int64_t index, int what, std::uint32_t seed) {
 // A blade that bends over as it rises: two pieces of a sheet that narrows.
 void draw_blade(Brush& brush, MaterialId grass, glm::dvec3 foot, double turn_rad, double height_m, double bend_m) {
   const glm::dvec3 lean(std::cos(turn_rad), 0.0, std::sin(turn_rad)), across(-lean.z, 0.0, lean.x);
-  brush.sheet(
-      grass, 1, 2,
-      [&](double u, double v) {
-        return foot + lean * (bend_m * v * v) + glm::dvec3(0.0, height_m * v, 0.0) +
-               across * ((u - 0.5) * 0.006 * (1.0 - 0.8 * v));
-      },
-      {0.006, height_m});
+  brush.sheet(grass, 1, 2,
+              [&](double u, double v) {
+                return foot + lean * (bend_m * v * v) + glm::dvec3(0.0, height_m * v, 0.0) +
+                       across * ((u - 0.5) * 0.006 * (1.0 - 0.8 * v));
+              },
+              {0.006, height_m});
 }
 
 double path_z_m(double x_m) {
@@ -52,13 +51,13 @@ Model make_meadow(std::size_t triangles) {
   }
   Brush(model, "Ground").box(earth, {-kHalf_m, -0.3, -kHalf_m}, {kHalf_m, 0.0, kHalf_m});
   constexpr int kPathPieces = 48;
-  Brush(model, "Path").sheet(
-      mown, kPathPieces, 1,
-      [](double u, double v) {
-        const double x = kHalf_m * (2.0 * u - 1.0);
-        return glm::dvec3(x, 0.004, path_z_m(x) + kPathHalf_m * (1.0 - 2.0 * v));
-      },
-      {2.0 * kHalf_m, 2.0 * kPathHalf_m});
+  Brush(model, "Path")
+      .sheet(mown, kPathPieces, 1,
+             [](double u, double v) {
+               const double x = kHalf_m * (2.0 * u - 1.0);
+               return glm::dvec3(x, 0.004, path_z_m(x) + kPathHalf_m * (1.0 - 2.0 * v));
+             },
+             {2.0 * kHalf_m, 2.0 * kPathHalf_m});
   Brush(model, "Boulders").cushion(stone, {1.8, -0.2, -3.6}, {3.4, 1.1, -2.4}, 0.45, 4);
   Brush(model, "Gatepost").box(stone, {-4.2, -0.1, 0.8}, {-3.8, 1.9, 1.2});
 
@@ -68,7 +67,8 @@ Model make_meadow(std::size_t triangles) {
     tufts[k] = model.objects.size() - 1;
     for (int b = 0; b < kBlades; ++b) {
       const std::int64_t blade = k * kBlades + b;
-      const double away_m = kTuft_m * std::sqrt(roll(blade, 1, 31)), angle = 2.0 * std::numbers::pi * roll(blade, 2, 31);
+      const double away_m = kTuft_m * std::sqrt(roll(blade, 1, 31)),
+                   angle = 2.0 * std::numbers::pi * roll(blade, 2, 31);
       draw_blade(tuft, greens[k], {away_m * std::cos(angle), -0.01, away_m * std::sin(angle)},
                  2.0 * std::numbers::pi * roll(blade, 3, 31), 0.10 + 0.16 * roll(blade, 4, 31),
                  0.02 + 0.10 * roll(blade, 5, 31));
@@ -80,8 +80,8 @@ Model make_meadow(std::size_t triangles) {
     const double x = kHalf_m * (2.0 * roll(number, 1, 37) - 1.0), z = kHalf_m * (2.0 * roll(number, 2, 37) - 1.0);
     if (std::abs(z - path_z_m(x)) < kPathHalf_m + kTuft_m) continue;
     const std::size_t variant = std::size_t(kVariants * roll(number, 3, 37));
-    model.placements.push_back({"Tuft at " + std::to_string(placed), tufts[variant < kVariants ? variant : 0],
-                                {x, 0.0, z}, 360.0 * roll(number, 4, 37)});
+    model.placements.push_back(
+        {"Tuft at " + std::to_string(placed), tufts[variant], {x, 0.0, z}, 360.0 * roll(number, 4, 37)});
     ++placed;
   }
 

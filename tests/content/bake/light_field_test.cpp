@@ -346,8 +346,7 @@ TEST(LightField, AgreesWithPathsThatAreFollowed) {
   EXPECT_LT(error / count, 0.05) << "mean error of a direction, noise of the followed paths included";
 }
 
-// What a picture covers is dark, and must not be heard before it, as near as it hangs: neither where points are close nor
-// where they are not.
+// What a picture covers is dark, and must not be heard before it, as near as it hangs.
 TEST(LightField, WhatAPictureCoversDoesNotDarkenIt) {
   for (const float off_m : {0.018f, 0.025f, 0.04f}) {
     Scene scene;
