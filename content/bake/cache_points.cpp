@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 #include <map>
+#include <set>
 #include <span>
 #include <utility>
 
@@ -49,15 +50,14 @@ CachePoints::CachePoints(const Scene& scene, const RayScene& rays, double spacin
   points_ = std::move(scattered.points);
   rays_cast_ = scattered.rays_cast;
   look_around(rays, 0, progress);
-  build_levels();
+  build_levels(0);
 }
 
 void CachePoints::add(std::vector<Point> closer, const RayScene& rays, Progress& progress) {
   const std::size_t first = points_.size();
   points_.insert(points_.end(), closer.begin(), closer.end());
   look_around(rays, first, progress);
-  levels_.clear();
-  build_levels();
+  build_levels(first);
 }
 
 void CachePoints::look_around(const RayScene& rays, std::size_t first, Progress& progress) {
@@ -92,20 +92,28 @@ float CachePoints::look_height_m(const Point& point) const {
   return std::min(kLookHeight_m * point.spacing_m / spacing_m_, 0.5f * point.cover_m);
 }
 
-void CachePoints::build_levels() {
+// Each level with all its points again where one of them is new.
+void CachePoints::build_levels(std::size_t first) {
+  std::set<float> changed;
+  for (std::size_t k = first; k < points_.size(); ++k) changed.insert(points_[k].spacing_m);
   std::map<float, std::vector<PointIndex::Influence>, std::greater<>> by_spacing;
   std::vector<PointIndex::Influence> closer;
   for (std::uint32_t k = 0; k < points_.size(); ++k) {
     const Point& point = points_[k];
-    const PointIndex::Influence influence{{point.position_m, k, point.normal}, influence_m(k)};
+    if (!changed.contains(point.spacing_m)) continue;
+    const float reach_m = kReachPerSpacing * point.spacing_m;
+    const PointIndex::Influence influence{
+        {point.position_m, k, point.normal}, influence_m(k), reach_m, reach_m / kOffPlane};
     by_spacing[point.spacing_m].push_back(influence);
-    if (point.spacing_m != points_.front().spacing_m) closer.push_back(influence);
+    if (k >= first && point.spacing_m != points_.front().spacing_m) closer.push_back(influence);
   }
   for (const auto& [spacing_m, influences] : by_spacing) {
     const float reach_m = kReachPerSpacing * spacing_m;
-    levels_.push_back(
-        {reach_m, PointIndex(influences, kCellPerReach * reach_m, levels_.empty() ? closer : decltype(closer)())});
+    const auto at = std::ranges::find_if(levels_, [&](const Level& level) { return level.reach_m <= reach_m; });
+    const auto level = at != levels_.end() && at->reach_m == reach_m ? at : levels_.insert(at, Level{reach_m, {}});
+    level->index = PointIndex(influences, kCellPerReach * reach_m);
   }
+  if (!levels_.empty()) levels_.front().index.mark_closer(closer);
 }
 
 // 1 where the place lies well within the point's free surroundings, falling to 0 at whatever closes them.

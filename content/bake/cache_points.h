@@ -41,7 +41,7 @@ class CachePoints {
   // Spacing is raised until at most max_points are needed, beside as many closer ones; spacing_m() says what it became.
   CachePoints(const Scene& scene, const RayScene& rays, double spacing_m, std::size_t max_points, Progress& progress);
 
-  // Adds points that are closer together than those so far, without their nearness.
+  // Adds points that are closer together than the first, without their nearness.
   void add(std::vector<Point> closer, const RayScene& rays, Progress& progress);
 
   std::size_t size() const { return points_.size(); }
@@ -89,7 +89,7 @@ class CachePoints {
   };
 
   void look_around(const RayScene& rays, std::size_t first, Progress& progress);
-  void build_levels();
+  void build_levels(std::size_t first);
   void look_up(const RayScene& rays, Point& point) const;
   float look_height_m(const Point& point) const;
   float open_fraction(const Point& point, glm::vec3 offset, float tangential_m) const;

@@ -32,7 +32,7 @@ IrradianceCache::IrradianceCache(const CachePoints& points, LightGather& gather,
 
   // The series of bounces: each gathers what the one before has added.
   Values emitted, last;
-  gather.reflected(refinement.direct, rays_of_bounce(options.samples, 1), 1, last, &emitted, &refinement.times_rays);
+  gather.reflected(refinement.direct, rays_of_bounce(options.samples, 1), 1, last, &emitted, &refinement.rays);
   indirect_ = emitted;
   if (bounces > 0) {
     add(indirect_, last);

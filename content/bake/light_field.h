@@ -18,7 +18,7 @@
 namespace probewalk {
 
 // Raised when the same scene and options get other light, lest a bake go on from what an earlier baker has kept.
-inline constexpr int kLightVersion = 3;
+inline constexpr int kLightVersion = 4;
 
 struct LightOptions {
   int bounces = 1;    // gathered one by one; all that follow are gathered together. 0: nothing is reflected

@@ -40,15 +40,16 @@ void LightGather::direct(Values& values, std::size_t first) {
 }
 
 void LightGather::reflected(const Values& source, int samples, std::uint32_t pass, Values& values, Values* emitted,
-                            const std::vector<std::uint8_t>* times) {
+                            const std::vector<std::uint32_t>* each) {
   values.resize(points_.size());
   if (emitted) emitted->resize(points_.size());
   for_each_point(0, [&](std::size_t k) {
     const std::uint32_t turn = mix_place(points_[k].position_m, seed_ + pass);
-    const std::uint32_t batches = times ? std::max<std::uint32_t>((*times)[k], 1) : 1;
+    const int count = each ? int((*each)[k]) : samples, batches = (count + samples - 1) / samples;
     Batch sum;
-    for (std::uint32_t b = 0; b < batches; ++b) {
-      gather_batch(k, source, samples, b == 0 ? turn : mix_bits(b, turn), emitted != nullptr, sum);
+    for (int b = 0; b < batches; ++b) {
+      gather_batch(k, source, count / batches, b == 0 ? turn : mix_bits(std::uint32_t(b), turn), emitted != nullptr,
+                   sum);
     }
     values[k] = sum.reflected * (1.0f / static_cast<float>(batches));
     if (emitted) (*emitted)[k] = sum.emitted * (1.0f / static_cast<float>(batches));

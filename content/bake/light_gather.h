@@ -38,10 +38,10 @@ class LightGather {
   // What arrives straight from the emitters.
   void direct(Values& values, std::size_t first = 0);
   // What `source`, reflected once, sends to the points, by so many rays each. emitted receives what sky and surfaces
-  // send by themselves, as far as it is not sampled directly; times: how many times the rays, by point. Both may be
-  // null. pass: chooses other directions.
+  // send by themselves, as far as it is not sampled directly; each: by so many rays instead, by point, no more than
+  // `samples` to a pattern. Both may be null. pass: chooses other directions.
   void reflected(const Values& source, int samples, std::uint32_t pass, Values& values, Values* emitted = nullptr,
-                 const std::vector<std::uint8_t>* times = nullptr);
+                 const std::vector<std::uint32_t>* each = nullptr);
   // What becomes of `source` by all reflections together (lux), found from point to point by so many rays each.
   std::vector<glm::vec3> reflected_for_ever(const Values& source, int samples);
   // The same by few rays, and how far off it may be: deviations receives standard errors (lux), or is null.

@@ -18,6 +18,10 @@ constexpr int kHalvings = 3;  // of the spacing, as narrow places have
 // with, half as many for the second bounce, within limits.
 constexpr float kGuessShare = 0.375f;
 constexpr int kLeastGuessRays = 16, kMostGuessRays = 96;
+// So that a scene takes minutes, whatever its points: they stand for ever smaller pieces of it, and each is but one of
+// many that its noise is spread among.
+constexpr double kMostRays = 100e6;
+constexpr int kLeastRays = 32;
 constexpr std::uint32_t kFirstPass = 101, kSecondPass = 102;
 // Neighbours may be off by this share of the light at a point. They stand a spacing off; what lies between points is
 // nearer to the next.
@@ -93,17 +97,25 @@ class Refinement {
     std::stable_sort(off.begin(), off.end(), [&](std::uint32_t a, std::uint32_t b) { return errors_[a] > errors_[b]; });
     return off;
   }
-  // How many times first_rays bring the standard error of the first bounce below kNoise. By other rays than those
+  // Rays that bring the standard error of the first bounce below kNoise, kMostRays allowing. By other rays than those
   // that will be cast: to go on where what was found so far is noisy would stop early where nothing was found.
-  std::vector<std::uint8_t> times_rays() const {
-    std::vector<std::uint8_t> times(points_.size());
+  std::vector<std::uint32_t> rays() const {
+    std::vector<std::uint32_t> rays(points_.size());
+    double sum = 0.0;
     for (std::size_t k = 0; k < points_.size(); ++k) {
       const float light = std::max(strongest_channel(source_[k].lux), dark_lux_);
       const float ratio = light > 0.0f ? deviations_[k] / (kNoise * light) : 0.0f;
       const float wanted = static_cast<float>(guess_rays_) * ratio * ratio / static_cast<float>(first_rays_);
-      times[k] = static_cast<std::uint8_t>(std::clamp(std::ceil(wanted), 1.0f, kMostTimes));
+      const int times = static_cast<int>(std::clamp(std::ceil(wanted), 1.0f, kMostTimes));
+      rays[k] = static_cast<std::uint32_t>(times * first_rays_);
+      sum += rays[k];
     }
-    return times;
+    if (sum > kMostRays) {
+      for (std::uint32_t& count : rays) {
+        count = std::min(count, static_cast<std::uint32_t>(std::max(count * kMostRays / sum, double(kLeastRays))));
+      }
+    }
+    return rays;
   }
   Values take_direct() { return std::move(direct_); }
 
@@ -140,7 +152,7 @@ LightRefinement refine_points(const Scene& scene, const RayScene& rays, LightGat
   }
   result.added = points.size() - before;
   result.direct = refinement.take_direct();
-  result.times_rays = refinement.times_rays();
+  result.rays = refinement.rays();
   return result;
 }
 

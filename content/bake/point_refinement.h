@@ -17,8 +17,9 @@ namespace probewalk {
 
 struct LightRefinement {
   std::size_t added = 0;
-  // By point: how many times first_rays its first bounce wants, lest it be noisy.
-  std::vector<std::uint8_t> times_rays;
+  // By point: rays for its first bounce, first_rays and more where that would be noisy; fewer of all where there are
+  // very many points.
+  std::vector<std::uint32_t> rays;
   LightGather::Values direct;  // light that arrives straight from the emitters, by point
   // How far neighbours are off, beyond what noise explains, as a share of all light at a point: of a twentieth of the
   // points by more than this.

@@ -10,8 +10,8 @@
 #include <cstdio>
 #include <exception>
 #include <filesystem>
-#include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,12 +31,24 @@ namespace fs = std::filesystem;
 
 constexpr std::uint32_t kJudges = 40;  // number of the set of views that judge both
 constexpr double kMiB = 1 << 20;
+constexpr std::uint64_t kMostBytes = 8;
 
 struct Measured {
   std::string what;
   RoomError error;
   std::uint64_t bytes = 0;
   double seconds = 0.0;
+};
+
+// The grids that come nearest to a plan: the smallest of no greater error, and the best of no more bytes.
+struct Rivals {
+  std::optional<Measured> equal_error, equal_bytes;
+  void consider(const Measured& grid, const Measured& plan) {
+    if (grid.error.worst() <= plan.error.worst() && (!equal_error || grid.bytes < equal_error->bytes))
+      equal_error = grid;
+    if (grid.bytes <= plan.bytes && (!equal_bytes || grid.error.worst() < equal_bytes->error.worst()))
+      equal_bytes = grid;
+  }
 };
 
 class Table {
@@ -82,53 +94,76 @@ class Table {
     return measured;
   }
 
-  // Grids of up to `most` probes, with every pair of sizes.
-  std::vector<Measured> grids(std::size_t most) {
-    std::vector<Measured> all;
+  // Compares grids with the plans, each with every pair of sizes that is not too large; the plans are in any order.
+  std::vector<Rivals> rivals(const std::vector<Measured>& plans) {
+    std::vector<Rivals> found(plans.size());
+    std::uint64_t most_bytes = 0;
+    for (const Measured& plan : plans) most_bytes = std::max(most_bytes, kMostBytes * plan.bytes);
     std::size_t before = 0;
-    for (const int probes : {1, 2, 4, 8, 16, 32, 60}) {
-      if (std::size_t(probes) > most) break;
+    for (const int probes : {1, 2, 4, 8, 16, 32, 64, 128}) {
       PlacementOptions options;
       options.max_probes = probes;
       const Placement placement = place_probes(scene_, rays_, space_, options);
-      if (placement.sites.size() == before) continue;
+      if (placement.sites.size() == before) break;  // the spacing that suits the rooms is reached
       before = placement.sites.size();
       const BakeState state(folder_ / "grids", "promise-table");
       MapStore store(rays_, light_, exposure_.radiance_scale, state, SpaceCells::around(scene_.bounds));
       PlannedMaps maps(store, BakeOptions{}.samples);
-      std::map<int, double> geometry_s, radiance_s;
-      for (const int n : kSides) {
-        for (const bool light : {false, true}) {
-          const double start_s = store.baking_seconds();
-          for (std::uint32_t k = 0; k < placement.sites.size(); ++k) {
-            light ? maps.radiance(k, placement.sites[k].position_m, n)
-                  : maps.geometry(k, placement.sites[k].position_m, n);
-          }
-          (light ? radiance_s : geometry_s)[n] = store.baking_seconds() - start_s;
-        }
-      }
-      for (const int n : kSides) {
-        for (const int r : kSides) {
-          std::vector<ProbeRecord> records;
+      const std::vector<Layer> geometry = layers(placement, maps, store, false, most_bytes),
+                               radiance = layers(placement, maps, store, true, most_bytes);
+      for (const Layer& near : geometry) {
+        for (const Layer& light : radiance) {
           Measured measured;
+          measured.bytes = near.bytes + light.bytes;
+          measured.seconds = near.seconds + light.seconds;
+          const auto counts = [&](std::size_t k) {
+            return measured.bytes <= plans[k].bytes || !found[k].equal_error ||
+                   measured.bytes < found[k].equal_error->bytes;
+          };
+          bool any = false;
+          for (std::size_t k = 0; k < plans.size(); ++k) any |= counts(k);
+          if (!any || measured.bytes > most_bytes) continue;
+          std::vector<ProbeRecord> records;
           for (std::uint32_t k = 0; k < placement.sites.size(); ++k) {
-            const glm::dvec3 position = placement.sites[k].position_m;
-            records.push_back(maps.record(k, position, n, r));
-            measured.bytes += maps.geometry(k, position, n).bytes_disk + maps.radiance(k, position, r).bytes_disk;
+            records.push_back(maps.record(k, placement.sites[k].position_m, near.side, light.side));
           }
-          measured.what = fmt::format("{} probes, {} and {}", records.size(), n, r);
+          measured.what = fmt::format("{} probes, {} and {}", records.size(), near.side, light.side);
           measured.error = measure(placement.grid, records);
-          measured.seconds = geometry_s[n] + radiance_s[r];
-          all.push_back(std::move(measured));
+          for (std::size_t k = 0; k < plans.size(); ++k) found[k].consider(measured, plans[k]);
         }
       }
       state.remove();
     }
-    return all;
+    return found;
   }
 
  private:
-  static constexpr int kSides[] = {64, 128, 256};
+  static constexpr int kSides[] = {64, 128, 256, 512, 1024};
+  // One of the two maps of all probes of a grid.
+  struct Layer {
+    int side = 0;
+    std::uint64_t bytes = 0;
+    double seconds = 0.0;
+  };
+
+  // Baked with ever more texels until they are too large.
+  static std::vector<Layer> layers(const Placement& placement, PlannedMaps& maps, const MapStore& store, bool is_light,
+                                   std::uint64_t most_bytes) {
+    std::vector<Layer> all;
+    for (const int side : kSides) {
+      if (!all.empty() && 3 * all.back().bytes > most_bytes) break;  // four times the texels
+      Layer layer{side};
+      const double start_s = store.baking_seconds();
+      for (std::uint32_t k = 0; k < placement.sites.size(); ++k) {
+        const glm::dvec3 position = placement.sites[k].position_m;
+        layer.bytes +=
+            is_light ? maps.radiance(k, position, side).bytes_disk : maps.geometry(k, position, side).bytes_disk;
+      }
+      layer.seconds = store.baking_seconds() - start_s;
+      all.push_back(layer);
+    }
+    return all;
+  }
 
   static LightOptions light_options() {
     LightOptions options;
@@ -172,17 +207,10 @@ void run(const fs::path& file, const std::vector<double>& targets, bool with_gri
                plans.back().error.worst() <= target ? "held" : "did NOT hold");
     std::fflush(stdout);
   }
-  const std::vector<Measured> grids = with_grids ? table.grids(32) : std::vector<Measured>();
-  for (std::size_t k = 0; with_grids && k < plans.size(); ++k) {
+  const std::vector<Rivals> rivals = with_grids ? table.rivals(plans) : std::vector<Rivals>();
+  for (std::size_t k = 0; k < rivals.size(); ++k) {
     const Measured& plan = plans[k];
-    const Measured* equal_error = nullptr;
-    const Measured* equal_bytes = nullptr;
-    for (const Measured& grid : grids) {
-      if (grid.error.worst() <= plan.error.worst() && (!equal_error || grid.bytes < equal_error->bytes))
-        equal_error = &grid;
-      if (grid.bytes <= plan.bytes && (!equal_bytes || grid.error.worst() < equal_bytes->error.worst()))
-        equal_bytes = &grid;
-    }
+    const auto& [equal_error, equal_bytes] = rivals[k];
     fmt::print("{} {:.3g}: grid of equal error: {}; of equal bytes: {}\n", file.stem().string(), targets[k],
                equal_error ? fmt::format("{}: bytes x {:.2f}, its bake alone x {:.2f} of the plan's time",
                                          text_of(*equal_error), double(equal_error->bytes) / double(plan.bytes),

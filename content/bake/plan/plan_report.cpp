@@ -38,6 +38,11 @@ std::string coarser_text(const PlannedRoom& room) {
   return fmt::format("{}", fmt::join(parts, "; "));
 }
 
+// Whether the views measured keep the error, but for their number: what others add may be too much.
+bool is_undecided(const Plan& plan) {
+  return !plan.kept && plan.held_back.worst() <= plan.target.error;
+}
+
 }  // namespace
 
 std::string plan_json(const Plan& plan) {
@@ -91,17 +96,21 @@ std::string plan_table(const Plan& plan) {
       "  held back ({} rays, {} pictures): mean FLIP {:.4f} +- {:.4f}, wrong {:.2f} % + holes {:.2f} % +- {:.2f} %",
       plan.held_back_rays, plan.held_back_pictures, plan.held_back.flip, plan.held_back.flip_deviation,
       100.0 * plan.held_back.wrong, 100.0 * plan.held_back.hole, 100.0 * plan.held_back.lost_deviation);
-  if (plan.target.error > 0.0)
+  if (plan.target.error > 0.0) {
     text += fmt::format("; promised {:.4g}: {}", plan.target.error, plan.kept ? "kept" : "NOT kept");
+    if (is_undecided(plan)) text += fmt::format(" for certain (up to {:.4f})", plan.held_back.bound());
+  }
   return text + "\n";
 }
 
 std::vector<std::string> shortfalls(const Plan& plan) {
   std::vector<std::string> sentences;
   if (!plan.kept && plan.target.error > 0.0) {
-    sentences.push_back(
-        fmt::format("the error of {:.4g} is not kept: mean FLIP {:.4f}, wrong and holes {:.2f} % on views held back",
-                    plan.target.error, plan.held_back.flip, 100.0 * plan.held_back.lost()));
+    const bool undecided = is_undecided(plan);
+    sentences.push_back(fmt::format(
+        "the error of {:.4g} is not kept{}: mean FLIP {:.4f}, wrong and holes {:.2f} % on views held back",
+        plan.target.error, undecided ? " for certain" : "", plan.held_back.flip, 100.0 * plan.held_back.lost()));
+    if (undecided) sentences.back() += fmt::format(", which may be {:.4f} on all", plan.held_back.bound());
   }
   if (!plan.kept && plan.target.budget_bytes > 0) {
     sentences.push_back(fmt::format("the budget of {:.1f} MiB is less than the smallest pack",

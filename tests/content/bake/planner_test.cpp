@@ -173,6 +173,21 @@ TEST_F(Planner, StatesWhatItCannotKeep) {
   EXPECT_FALSE(Pack::open(o.pack).manifest().warnings.empty());
 }
 
+// 0.0936 +- 0.0049 may well be more than 0.1.
+TEST(PlanReport, TellsAnErrorThatMayBeKeptFromOneThatIsNot) {
+  Plan plan;
+  plan.target.error = 0.1;
+  plan.held_back.measured = true;
+  plan.held_back.flip = 0.0936;
+  plan.held_back.flip_deviation = 0.0049;
+  EXPECT_NE(plan_table(plan).find("NOT kept for certain (up to 0.1017)"), std::string::npos) << plan_table(plan);
+  ASSERT_EQ(shortfalls(plan).size(), 1u);
+  EXPECT_NE(shortfalls(plan)[0].find("0.1 is not kept for certain"), std::string::npos) << shortfalls(plan)[0];
+  plan.held_back.flip = 0.104;
+  EXPECT_EQ(plan_table(plan).find("for certain"), std::string::npos) << plan_table(plan);
+  EXPECT_NE(shortfalls(plan)[0].find("0.1 is not kept: "), std::string::npos) << shortfalls(plan)[0];
+}
+
 TEST_F(Planner, RefusesWhatItCannotPromise) {
   BakeOptions both = options("box-room", "a", 0.05);
   both.target.budget_bytes = 1000;
