@@ -1,8 +1,8 @@
 // Error promised against error measured, beside uniform grids: by hand, not run by ctest.
-//   promise_table [--plans-only] SCENE [TARGET...]
+//   promise_table [--plans-only] [--grids N] SCENE [TARGET...]
 // For each target the bake is planned and measured on views that the planner has not seen. Then grids of many numbers
 // of probes and sizes are measured on the same views: the smallest of no greater error, and the best of no more bytes.
-// Prints a line a target, and the grids' frontier.
+// None of more than N times the bytes of the largest plan is tried (8). Prints a line a target, and a line of grids.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -31,7 +31,6 @@ namespace fs = std::filesystem;
 
 constexpr std::uint32_t kJudges = 40;  // number of the set of views that judge both
 constexpr double kMiB = 1 << 20;
-constexpr std::uint64_t kMostBytes = 8;
 
 struct Measured {
   std::string what;
@@ -95,10 +94,11 @@ class Table {
   }
 
   // Compares grids with the plans, each with every pair of sizes that is not too large; the plans are in any order.
-  std::vector<Rivals> rivals(const std::vector<Measured>& plans) {
+  std::vector<Rivals> rivals(const std::vector<Measured>& plans, double most_plans) {
     std::vector<Rivals> found(plans.size());
     std::uint64_t most_bytes = 0;
-    for (const Measured& plan : plans) most_bytes = std::max(most_bytes, kMostBytes * plan.bytes);
+    for (const Measured& plan : plans)
+      most_bytes = std::max(most_bytes, std::uint64_t(most_plans * double(plan.bytes)));
     std::size_t before = 0;
     for (const int probes : {1, 2, 4, 8, 16, 32, 64, 128}) {
       PlacementOptions options;
@@ -196,7 +196,8 @@ std::string text_of(const Measured& measured) {
                      100.0 * measured.error.lost(), double(measured.bytes) / kMiB, measured.seconds, measured.what);
 }
 
-void run(const fs::path& file, const std::vector<double>& targets, bool with_grids) {
+// most_plans: bytes of a grid, in plans; 0: no grids.
+void run(const fs::path& file, const std::vector<double>& targets, double most_plans) {
   const fs::path folder = fs::temp_directory_path() / fmt::format("promise-table-{}", file.stem().string());
   fs::create_directories(folder);
   Table table(file, folder);
@@ -207,7 +208,7 @@ void run(const fs::path& file, const std::vector<double>& targets, bool with_gri
                plans.back().error.worst() <= target ? "held" : "did NOT hold");
     std::fflush(stdout);
   }
-  const std::vector<Rivals> rivals = with_grids ? table.rivals(plans) : std::vector<Rivals>();
+  const std::vector<Rivals> rivals = most_plans > 0.0 ? table.rivals(plans, most_plans) : std::vector<Rivals>();
   for (std::size_t k = 0; k < rivals.size(); ++k) {
     const Measured& plan = plans[k];
     const auto& [equal_error, equal_bytes] = rivals[k];
@@ -227,17 +228,26 @@ void run(const fs::path& file, const std::vector<double>& targets, bool with_gri
 }  // namespace probewalk::bench
 
 int main(int argc, char** argv) {
-  const bool with_grids = argc < 2 || std::string(argv[1]) != "--plans-only";
-  if (!with_grids) --argc, ++argv;
-  if (argc < 2) {
-    std::fputs("promise_table [--plans-only] SCENE [TARGET...]\n", stderr);
-    return 2;
-  }
+  double most_plans = 8.0;
   try {
+    for (; argc > 2; --argc, ++argv) {
+      if (std::string(argv[1]) == "--plans-only") {
+        most_plans = 0.0;
+      } else if (std::string(argv[1]) == "--grids") {
+        most_plans = std::stod(argv[2]);
+        --argc, ++argv;
+      } else {
+        break;
+      }
+    }
+    if (argc < 2) {
+      std::fputs("promise_table [--plans-only] [--grids N] SCENE [TARGET...]\n", stderr);
+      return 2;
+    }
     std::vector<double> targets;
     for (int k = 2; k < argc; ++k) targets.push_back(std::stod(argv[k]));
     if (targets.empty()) targets = {0.15, 0.1, 0.07, 0.05};
-    probewalk::bench::run(argv[1], targets, with_grids);
+    probewalk::bench::run(argv[1], targets, most_plans);
     return 0;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "promise_table: %s\n", error.what());
