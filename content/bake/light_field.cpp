@@ -63,6 +63,12 @@ LightField::LightField(const Scene& scene, const RayScene& rays, const LightOpti
                     "neighbours were off by more than {:.0f} % at a twentieth of the points, and are by {:.0f} %",
                     impl_->points.size(), refined.added, 100.0 * refined.error_before, 100.0 * refined.error_after));
   }
+  if (refined.rays_share < 1.0) {
+    progress.note(
+        fmt::format("light is gathered at {} points by {:.0f} % of the rays that its noise asks for: more would "
+                    "take too long",
+                    impl_->points.size(), 100.0 * refined.rays_share));
+  }
 }
 
 LightField::~LightField() = default;

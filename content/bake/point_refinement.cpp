@@ -99,7 +99,7 @@ class Refinement {
   }
   // Rays that bring the standard error of the first bounce below kNoise, kMostRays allowing. By other rays than those
   // that will be cast: to go on where what was found so far is noisy would stop early where nothing was found.
-  std::vector<std::uint32_t> rays() const {
+  std::vector<std::uint32_t> rays(double& share) const {
     std::vector<std::uint32_t> rays(points_.size());
     double sum = 0.0;
     for (std::size_t k = 0; k < points_.size(); ++k) {
@@ -110,9 +110,10 @@ class Refinement {
       rays[k] = static_cast<std::uint32_t>(times * first_rays_);
       sum += rays[k];
     }
-    if (sum > kMostRays) {
+    share = std::min(kMostRays / std::max(sum, 1.0), 1.0);
+    if (share < 1.0) {
       for (std::uint32_t& count : rays) {
-        count = std::min(count, static_cast<std::uint32_t>(std::max(count * kMostRays / sum, double(kLeastRays))));
+        count = std::min(count, static_cast<std::uint32_t>(std::max(share * count, double(kLeastRays))));
       }
     }
     return rays;
@@ -152,7 +153,7 @@ LightRefinement refine_points(const Scene& scene, const RayScene& rays, LightGat
   }
   result.added = points.size() - before;
   result.direct = refinement.take_direct();
-  result.rays = refinement.rays();
+  result.rays = refinement.rays(result.rays_share);
   return result;
 }
 

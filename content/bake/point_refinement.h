@@ -20,6 +20,7 @@ struct LightRefinement {
   // By point: rays for its first bounce, first_rays and more where that would be noisy; fewer of all where there are
   // very many points.
   std::vector<std::uint32_t> rays;
+  double rays_share = 1.0;  // of those that it wants
   LightGather::Values direct;  // light that arrives straight from the emitters, by point
   // How far neighbours are off, beyond what noise explains, as a share of all light at a point: of a twentieth of the
   // points by more than this.
