@@ -110,7 +110,8 @@ class Refinement {
       rays[k] = static_cast<std::uint32_t>(times * first_rays_);
       sum += rays[k];
     }
-    share = std::min(kMostRays / std::max(sum, 1.0), 1.0);
+    share = 1.0;
+    while (share * sum > kMostRays) share *= 0.5;  // what changes in one room hardly ever changes all
     if (share < 1.0) {
       for (std::uint32_t& count : rays) {
         count = std::min(count, static_cast<std::uint32_t>(std::max(share * count, double(kLeastRays))));
