@@ -2,7 +2,9 @@
 //   promise_table [--plans-only] [--grids N] SCENE [TARGET...]
 // For each target the bake is planned and measured on views that the planner has not seen. Then grids of many numbers
 // of probes and sizes are measured on the same views: the smallest of no greater error, and the best of no more bytes.
-// None of more than N times the bytes of the largest plan is tried (8). Prints a line a target, and a line of grids.
+// Not tried are grids of more than N times the bytes of the largest plan (8), of less than an eighth of the probes that
+// the smallest has, and maps more than twice as fine as the finest plan's. Prints a line a target, and a line of grids;
+// what grids were found so far on stderr.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -37,6 +39,8 @@ struct Measured {
   RoomError error;
   std::uint64_t bytes = 0;
   double seconds = 0.0;
+  std::size_t probes = 0;
+  int finest = 0;  // texels a side of its finest map
 };
 
 // The grids that come nearest to a plan: the smallest of no greater error, and the best of no more bytes.
@@ -49,6 +53,23 @@ struct Rivals {
       equal_bytes = grid;
   }
 };
+
+std::string text_of(const Measured& measured) {
+  return fmt::format("FLIP {:.4f}, lost {:.2f} %, {:.2f} MiB, {:.1f} s ({})", measured.error.flip,
+                     100.0 * measured.error.lost(), double(measured.bytes) / kMiB, measured.seconds, measured.what);
+}
+
+std::string text_of(const Rivals& rivals, const Measured& plan) {
+  const auto& [equal_error, equal_bytes] = rivals;
+  return fmt::format(
+      "grid of equal error: {}; of equal bytes: {}",
+      equal_error ? fmt::format("{}: bytes x {:.2f}, its bake alone x {:.2f} of the plan's time", text_of(*equal_error),
+                                double(equal_error->bytes) / double(plan.bytes), equal_error->seconds / plan.seconds)
+                  : std::string("none of those tried"),
+      equal_bytes
+          ? fmt::format("{}: error x {:.2f}", text_of(*equal_bytes), equal_bytes->error.worst() / plan.error.worst())
+          : std::string("none is as small"));
+}
 
 class Table {
  public:
@@ -89,6 +110,8 @@ class Table {
         fmt::format("{} probes, {}..{}, {}", records.size(), least, most, plan.kept ? "said kept" : "said NOT kept");
     measured.error = measure(plan.grid, records);
     measured.seconds = plan.seconds;
+    measured.probes = records.size();
+    measured.finest = int(most);
     state.remove();
     return measured;
   }
@@ -99,8 +122,11 @@ class Table {
     std::uint64_t most_bytes = 0;
     for (const Measured& plan : plans)
       most_bytes = std::max(most_bytes, std::uint64_t(most_plans * double(plan.bytes)));
-    std::size_t before = 0;
+    std::size_t before = 0, least = plans.front().probes;
+    int finest = 0;
+    for (const Measured& plan : plans) least = std::min(least, plan.probes), finest = std::max(finest, plan.finest);
     for (const int probes : {1, 2, 4, 8, 16, 32, 64, 128}) {
+      if (std::size_t(probes) < least / 8) continue;
       PlacementOptions options;
       options.max_probes = probes;
       const Placement placement = place_probes(scene_, rays_, space_, options);
@@ -109,8 +135,8 @@ class Table {
       const BakeState state(folder_ / "grids", "promise-table");
       MapStore store(rays_, light_, exposure_.radiance_scale, state, SpaceCells::around(scene_.bounds));
       PlannedMaps maps(store, BakeOptions{}.samples);
-      const std::vector<Layer> geometry = layers(placement, maps, store, false, most_bytes),
-                               radiance = layers(placement, maps, store, true, most_bytes);
+      const std::vector<Layer> geometry = layers(placement, maps, store, false, most_bytes, 2 * finest),
+                               radiance = layers(placement, maps, store, true, most_bytes, 2 * finest);
       for (const Layer& near : geometry) {
         for (const Layer& light : radiance) {
           Measured measured;
@@ -133,6 +159,9 @@ class Table {
         }
       }
       state.remove();
+      for (std::size_t k = 0; k < plans.size(); ++k) {
+        fmt::print(stderr, "up to {} probes: {}\n", before, text_of(found[k], plans[k]));
+      }
     }
     return found;
   }
@@ -148,9 +177,10 @@ class Table {
 
   // Baked with ever more texels until they are too large.
   static std::vector<Layer> layers(const Placement& placement, PlannedMaps& maps, const MapStore& store, bool is_light,
-                                   std::uint64_t most_bytes) {
+                                   std::uint64_t most_bytes, int finest) {
     std::vector<Layer> all;
     for (const int side : kSides) {
+      if (side > finest && !all.empty()) break;
       if (!all.empty() && 3 * all.back().bytes > most_bytes) break;  // four times the texels
       Layer layer{side};
       const double start_s = store.baking_seconds();
@@ -191,11 +221,6 @@ class Table {
   WalkerViews views_;
 };
 
-std::string text_of(const Measured& measured) {
-  return fmt::format("FLIP {:.4f}, lost {:.2f} %, {:.2f} MiB, {:.1f} s ({})", measured.error.flip,
-                     100.0 * measured.error.lost(), double(measured.bytes) / kMiB, measured.seconds, measured.what);
-}
-
 // most_plans: bytes of a grid, in plans; 0: no grids.
 void run(const fs::path& file, const std::vector<double>& targets, double most_plans) {
   const fs::path folder = fs::temp_directory_path() / fmt::format("promise-table-{}", file.stem().string());
@@ -210,16 +235,7 @@ void run(const fs::path& file, const std::vector<double>& targets, double most_p
   }
   const std::vector<Rivals> rivals = most_plans > 0.0 ? table.rivals(plans, most_plans) : std::vector<Rivals>();
   for (std::size_t k = 0; k < rivals.size(); ++k) {
-    const Measured& plan = plans[k];
-    const auto& [equal_error, equal_bytes] = rivals[k];
-    fmt::print("{} {:.3g}: grid of equal error: {}; of equal bytes: {}\n", file.stem().string(), targets[k],
-               equal_error ? fmt::format("{}: bytes x {:.2f}, its bake alone x {:.2f} of the plan's time",
-                                         text_of(*equal_error), double(equal_error->bytes) / double(plan.bytes),
-                                         equal_error->seconds / plan.seconds)
-                           : std::string("none of those tried"),
-               equal_bytes ? fmt::format("{}: error x {:.2f}", text_of(*equal_bytes),
-                                         equal_bytes->error.worst() / plan.error.worst())
-                           : std::string("none is as small"));
+    fmt::print("{} {:.3g}: {}\n", file.stem().string(), targets[k], text_of(rivals[k], plans[k]));
   }
   fs::remove_all(folder);
 }
