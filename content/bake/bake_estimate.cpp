@@ -7,6 +7,7 @@
 #include <chrono>
 
 #include "content/bake/patterns.h"
+#include "content/bake/point_refinement.h"
 
 namespace probewalk {
 namespace {
@@ -16,8 +17,9 @@ constexpr int kTimedRays = 20000;
 constexpr double kRaysPerTexel = 12.0;
 constexpr double kRaysPerVertex = 1.5;
 constexpr double kRaysPerGather = 1.6;
-constexpr double kGathersPerSample = 6.8;  // guesses and bounces: garage 6.5, living-room 6.7, hotel-room 7.4
-constexpr double kPointsPerSquare = 1.3;   // of the spacing, both sides
+// Guesses and bounces: garage 6.5, living-room 6.7, hotel-room 7.4. All but the first bounce are 2.2.
+constexpr double kFirstGathersPerSample = 4.6, kOtherGathersPerSample = 2.2;
+constexpr double kPointsPerSquare = 1.3;  // of the spacing, both sides
 constexpr double kMostPoints = 300000.0;
 // Times as many points with those that are closer: 1.65 in the house, 2.7 in living-room, 3.0 in hotel-room.
 constexpr double kWithCloser = 2.4;
@@ -53,7 +55,9 @@ BakeEstimate estimate_bake(const Scene& scene, const RayScene& rays, const Light
   }
   const double points =
       kWithCloser * std::min(kPointsPerSquare * area_m2 / (light.cache_spacing_m * light.cache_spacing_m), kMostPoints);
-  rays_needed += points * light.samples * kGathersPerSample * kRaysPerGather;
+  const double gathers = std::min(points * light.samples * kFirstGathersPerSample, kMostRays) +
+                         points * light.samples * kOtherGathersPerSample;
+  rays_needed += gathers * kRaysPerGather;
   estimate.seconds = rays_needed * seconds_per_ray(rays, position_m);
   estimate.bytes_disk = static_cast<std::uint64_t>(bytes);
   return estimate;

@@ -98,14 +98,11 @@ void CachePoints::build_levels(std::size_t first) {
   for (std::size_t k = first; k < points_.size(); ++k) changed.insert(points_[k].spacing_m);
   std::map<float, std::vector<PointIndex::Influence>, std::greater<>> by_spacing;
   std::vector<PointIndex::Influence> closer;
-  for (std::uint32_t k = 0; k < points_.size(); ++k) {
-    const Point& point = points_[k];
-    if (!changed.contains(point.spacing_m)) continue;
-    const float reach_m = kReachPerSpacing * point.spacing_m;
-    const PointIndex::Influence influence{
-        {point.position_m, k, point.normal}, influence_m(k), reach_m, reach_m / kOffPlane};
-    by_spacing[point.spacing_m].push_back(influence);
-    if (k >= first && point.spacing_m != points_.front().spacing_m) closer.push_back(influence);
+  for (std::size_t k = 0; k < points_.size(); ++k) {
+    const float spacing_m = points_[k].spacing_m;
+    if (!changed.contains(spacing_m)) continue;
+    by_spacing[spacing_m].push_back(influence(k));
+    if (k >= first && spacing_m != points_.front().spacing_m) closer.push_back(influence(k));
   }
   for (const auto& [spacing_m, influences] : by_spacing) {
     const float reach_m = kReachPerSpacing * spacing_m;
@@ -225,11 +222,10 @@ std::uint64_t CachePoints::identity(std::size_t k) const {
   return short_hash(std::as_bytes(std::span(&points_[k], 1)));
 }
 
-// The influence is a flat ellipsoid; its box.
-glm::vec3 CachePoints::influence_m(std::size_t k) const {
-  const glm::vec3 n = points_[k].normal;
-  return kReachPerSpacing * points_[k].spacing_m *
-         glm::sqrt(glm::max(glm::vec3(1.0f) - n * n * (1.0f - 1.0f / (kOffPlane * kOffPlane)), 0.0f));
+PointIndex::Influence CachePoints::influence(std::size_t k) const {
+  const Point& point = points_[k];
+  const float reach_m = kReachPerSpacing * point.spacing_m;
+  return {{point.position_m, static_cast<std::uint32_t>(k), point.normal}, reach_m, reach_m / kOffPlane};
 }
 
 }  // namespace probewalk

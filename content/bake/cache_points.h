@@ -74,8 +74,8 @@ class CachePoints {
 
   // A hash of all that a point is, its number not counted.
   std::uint64_t identity(std::size_t k) const;
-  // Half the box around a point outside of which its value counts nowhere.
-  glm::vec3 influence_m(std::size_t k) const;
+  // Where the value of a point counts.
+  PointIndex::Influence influence(std::size_t k) const;
 
  private:
   static constexpr float kVanishing = 1e-12f;

@@ -24,7 +24,7 @@ struct Entry {
 
 template <typename Visit>
 void for_each_cell(const PointIndex::Influence& influence, float cell_m, Visit&& visit) {
-  const glm::vec3 p = influence.member.position_m, half = influence.half_m;
+  const glm::vec3 p = influence.member.position_m, half = influence.half_m();
   const glm::ivec3 low(glm::floor((p - half) / cell_m)), high(glm::floor((p + half) / cell_m));
   for (int z = low.z; z <= high.z; ++z) {
     for (int y = low.y; y <= high.y; ++y) {
@@ -33,7 +33,8 @@ void for_each_cell(const PointIndex::Influence& influence, float cell_m, Visit&&
   }
 }
 
-// Whether a point may count in a cell: false for none where it does.
+// Whether a point may count in a cell: false for none where it does. By the ball and the slice that the ellipsoid lies
+// in.
 bool reaches(const PointIndex::Influence& influence, glm::ivec3 cell, float cell_m) {
   const float half_m = kRounding * 0.5f * cell_m;
   const glm::vec3 offset = (glm::vec3(cell) + 0.5f) * cell_m - influence.member.position_m,

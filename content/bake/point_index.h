@@ -24,12 +24,17 @@ class PointIndex {
     std::uint32_t point = 0;
     glm::vec3 normal{0.0f};
   };
-  // A point counts within a ball from which two planes across its normal cut a slice.
+  // A point counts within an ellipsoid: so far along its surface, and so far across it.
   struct Influence {
     Member member;
-    glm::vec3 half_m{0.0f};  // of the slice's box
-    float reach_m = 0.0f;    // radius of the ball
-    float across_m = 0.0f;   // of the planes from the point
+    float reach_m = 0.0f;
+    float across_m = 0.0f;  // at most reach_m
+
+    // Of the box around it.
+    glm::vec3 half_m() const {
+      const glm::vec3 n2 = member.normal * member.normal;
+      return glm::sqrt(glm::max(reach_m * reach_m * (1.0f - n2) + across_m * across_m * n2, 0.0f));
+    }
   };
 
   struct Found {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "content/bake/point_scatter.h"
@@ -18,10 +19,6 @@ constexpr int kHalvings = 3;  // of the spacing, as narrow places have
 // with, half as many for the second bounce, within limits.
 constexpr float kGuessShare = 0.375f;
 constexpr int kLeastGuessRays = 16, kMostGuessRays = 96;
-// So that a scene takes minutes, whatever its points: they stand for ever smaller pieces of it, and each is but one of
-// many that its noise is spread among.
-constexpr double kMostRays = 100e6;
-constexpr int kLeastRays = 32;
 constexpr std::uint32_t kFirstPass = 101, kSecondPass = 102;
 // Neighbours may be off by this share of the light at a point. They stand a spacing off; what lies between points is
 // nearer to the next.
@@ -97,25 +94,16 @@ class Refinement {
     std::stable_sort(off.begin(), off.end(), [&](std::uint32_t a, std::uint32_t b) { return errors_[a] > errors_[b]; });
     return off;
   }
-  // Rays that bring the standard error of the first bounce below kNoise, kMostRays allowing. By other rays than those
-  // that will be cast: to go on where what was found so far is noisy would stop early where nothing was found.
-  std::vector<std::uint32_t> rays(double& share) const {
+  // Rays that bring the standard error of the first bounce below kNoise. By other rays than those that will be cast: to
+  // go on where what was found so far is noisy would stop early where nothing was found.
+  std::vector<std::uint32_t> rays() const {
     std::vector<std::uint32_t> rays(points_.size());
-    double sum = 0.0;
     for (std::size_t k = 0; k < points_.size(); ++k) {
       const float light = std::max(strongest_channel(source_[k].lux), dark_lux_);
       const float ratio = light > 0.0f ? deviations_[k] / (kNoise * light) : 0.0f;
       const float wanted = static_cast<float>(guess_rays_) * ratio * ratio / static_cast<float>(first_rays_);
-      const int times = static_cast<int>(std::clamp(std::ceil(wanted), 1.0f, kMostTimes));
-      rays[k] = static_cast<std::uint32_t>(times * first_rays_);
-      sum += rays[k];
-    }
-    share = 1.0;
-    while (share * sum > kMostRays) share *= 0.5;  // what changes in one room hardly ever changes all
-    if (share < 1.0) {
-      for (std::uint32_t& count : rays) {
-        count = std::min(count, static_cast<std::uint32_t>(std::max(share * count, double(kLeastRays))));
-      }
+      rays[k] =
+          static_cast<std::uint32_t>(first_rays_ * static_cast<int>(std::clamp(std::ceil(wanted), 1.0f, kMostTimes)));
     }
     return rays;
   }
@@ -132,6 +120,16 @@ class Refinement {
 };
 
 }  // namespace
+
+double limit_rays(std::vector<std::uint32_t>& rays) {
+  const double sum = std::accumulate(rays.begin(), rays.end(), 0.0);
+  double share = 1.0;
+  while (share * sum > kMostRays) share *= 0.5;
+  for (std::uint32_t& count : rays) {
+    count = std::min(count, std::max(static_cast<std::uint32_t>(share * count), kLeastRays));
+  }
+  return share;
+}
 
 LightRefinement refine_points(const Scene& scene, const RayScene& rays, LightGather& gather, int first_rays,
                               CachePoints& points, Progress& progress) {
@@ -154,7 +152,8 @@ LightRefinement refine_points(const Scene& scene, const RayScene& rays, LightGat
   }
   result.added = points.size() - before;
   result.direct = refinement.take_direct();
-  result.rays = refinement.rays(result.rays_share);
+  result.rays = refinement.rays();
+  result.rays_share = limit_rays(result.rays);
   return result;
 }
 

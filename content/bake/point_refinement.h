@@ -17,15 +17,21 @@ namespace probewalk {
 
 struct LightRefinement {
   std::size_t added = 0;
-  // By point: rays for its first bounce, first_rays and more where that would be noisy; fewer of all where there are
-  // very many points.
+  // By point: rays for its first bounce, first_rays and more where that would be noisy; limited.
   std::vector<std::uint32_t> rays;
-  double rays_share = 1.0;  // of those that it wants
+  double rays_share = 1.0;     // of those wanted
   LightGather::Values direct;  // light that arrives straight from the emitters, by point
   // How far neighbours are off, beyond what noise explains, as a share of all light at a point: of a twentieth of the
   // points by more than this.
   double error_before = 0.0, error_after = 0.0;
 };
+
+// Light takes minutes, however many points a scene has: more rays than kMostRays are halved, and again, until they are
+// no more, but for kLeastRays a point. By halves, lest what changes in one room light all of them anew. Returns the
+// share.
+inline constexpr double kMostRays = 100e6;
+inline constexpr std::uint32_t kLeastRays = 32;
+double limit_rays(std::vector<std::uint32_t>& rays);
 
 // gather: of the points. Deterministic, whatever the threads. Throws Interrupted.
 LightRefinement refine_points(const Scene& scene, const RayScene& rays, LightGather& gather, int first_rays,

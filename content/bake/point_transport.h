@@ -1,5 +1,5 @@
 // Where light goes that the cache points reflect, from point to point: what is left after the first bounces, which are
-// gathered with more rays, is followed here until nothing is left of it. A white room reflects light dozens of times,
+// gathered with more rays, is followed here until next to nothing is left. A white room reflects light dozens of times,
 // and its slowest part fades last: to go on from the ratio of two early bounces left 9 % of a hotel room's light out.
 #pragma once
 

@@ -46,6 +46,9 @@ struct Measured {
 // The grids that come nearest to a plan: the smallest of no greater error, and the best of no more bytes.
 struct Rivals {
   std::optional<Measured> equal_error, equal_bytes;
+  bool may_want(std::uint64_t bytes, const Measured& plan) const {
+    return bytes <= plan.bytes || !equal_error || bytes < equal_error->bytes;
+  }
   void consider(const Measured& grid, const Measured& plan) {
     if (grid.error.worst() <= plan.error.worst() && (!equal_error || grid.bytes < equal_error->bytes))
       equal_error = grid;
@@ -130,7 +133,7 @@ class Table {
       PlacementOptions options;
       options.max_probes = probes;
       const Placement placement = place_probes(scene_, rays_, space_, options);
-      if (placement.sites.size() == before) break;  // the spacing that suits the rooms is reached
+      if (placement.sites.size() == before) continue;
       before = placement.sites.size();
       const BakeState state(folder_ / "grids", "promise-table");
       MapStore store(rays_, light_, exposure_.radiance_scale, state, SpaceCells::around(scene_.bounds));
@@ -142,13 +145,9 @@ class Table {
           Measured measured;
           measured.bytes = near.bytes + light.bytes;
           measured.seconds = near.seconds + light.seconds;
-          const auto counts = [&](std::size_t k) {
-            return measured.bytes <= plans[k].bytes || !found[k].equal_error ||
-                   measured.bytes < found[k].equal_error->bytes;
-          };
-          bool any = false;
-          for (std::size_t k = 0; k < plans.size(); ++k) any |= counts(k);
-          if (!any || measured.bytes > most_bytes) continue;
+          bool is_wanted = false;
+          for (std::size_t k = 0; k < plans.size(); ++k) is_wanted |= found[k].may_want(measured.bytes, plans[k]);
+          if (!is_wanted || measured.bytes > most_bytes) continue;
           std::vector<ProbeRecord> records;
           for (std::uint32_t k = 0; k < placement.sites.size(); ++k) {
             records.push_back(maps.record(k, placement.sites[k].position_m, near.side, light.side));
@@ -177,10 +176,10 @@ class Table {
 
   // Baked with ever more texels until they are too large.
   static std::vector<Layer> layers(const Placement& placement, PlannedMaps& maps, const MapStore& store, bool is_light,
-                                   std::uint64_t most_bytes, int finest) {
+                                   std::uint64_t most_bytes, int most_side) {
     std::vector<Layer> all;
     for (const int side : kSides) {
-      if (side > finest && !all.empty()) break;
+      if (side > most_side && !all.empty()) break;
       if (!all.empty() && 3 * all.back().bytes > most_bytes) break;  // four times the texels
       Layer layer{side};
       const double start_s = store.baking_seconds();

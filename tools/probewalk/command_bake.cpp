@@ -93,11 +93,11 @@ void print_report(const BakeOptions& options, const BakeReport& report, bool as_
   }
   constexpr double kMiB = 1 << 20;
   std::fputs(fmt::format("{}: {} probes in {} rooms, {} level{}\n"
-                         "  {:.3g} million texels, baked at {:.2f} s per million; {:.0f} s in all, {:.0f} million rays\n"
+                         "  {:.{}f} million texels, baked at {:.2f} s per million; {:.0f} s in all, {:.0f} million rays\n"
                          "  {:.2f} MiB on disk, {:.2f} MiB on the device, {:.2f} % of cells without a cut\n"
                          "  seen from above: {}\n",
                          options.pack.string(), report.probes, report.rooms, report.levels, report.levels == 1 ? "" : "s",
-                         static_cast<double>(report.texels) * 1e-6, report.seconds_per_million_texels, report.seconds,
+                         static_cast<double>(report.texels) * 1e-6, report.texels < 1000000 ? 3 : 1, report.seconds_per_million_texels, report.seconds,
                          static_cast<double>(report.rays) * 1e-6, static_cast<double>(report.bytes_disk) / kMiB,
                          static_cast<double>(report.bytes_device) / kMiB, 100.0 * report.connected_fraction, report.plan.string())
                  .c_str(),

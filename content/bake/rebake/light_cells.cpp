@@ -39,7 +39,7 @@ LightCells hash_light(const LightField& light, const SpaceCells& cells) {
     constexpr double kRounding_m = 1e-4;
     const CachePoints::Point& point = points[k];
     result.identities[k] = points.identity(k);
-    const glm::dvec3 half_m = glm::dvec3(points.influence_m(k)) + kRounding_m;
+    const glm::dvec3 half_m = glm::dvec3(points.influence(k).half_m()) + kRounding_m;
     add_in_box(cells, glm::dvec3(point.position_m) - half_m, glm::dvec3(point.position_m) + half_m,
                result.identities[k], result.points);
     std::uint64_t cast = 0;

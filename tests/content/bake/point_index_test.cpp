@@ -21,14 +21,11 @@ std::vector<PointIndex::Influence> thicket(int count, double side_m, std::uint64
   for (int k = 0; k < count; ++k) {
     const glm::vec3 position(random(0.0, side_m), random(0.0, side_m), random(-side_m, 0.0)),
         normal(random.direction());
-    const glm::vec3 half = glm::sqrt(kReach_m * kReach_m * (1.0f - normal * normal) + kAcross_m * kAcross_m);
-    influences.push_back(
-        {{position, std::uint32_t(k), normal}, glm::min(half, glm::vec3(kReach_m)), kReach_m, kAcross_m});
+    influences.push_back({{position, std::uint32_t(k), normal}, kReach_m, kAcross_m});
   }
   return influences;
 }
 
-// Within an ellipsoid that the slice holds, as cache points count.
 bool counts(const PointIndex::Influence& influence, glm::vec3 position_m) {
   const glm::vec3 offset = position_m - influence.member.position_m;
   const float across = glm::dot(offset, influence.member.normal), off = kReach_m / kAcross_m;
@@ -66,8 +63,8 @@ TEST(PointIndex, MissesNoPointThatCounts) {
   }
 }
 
-// Amid grass most of the work of light is looking at points in vain: without division 10 are listed for one that
-// counts.
+// Amid grass most of the work of light is looking at points in vain: here 3 are listed for one that counts, and
+// were 6.7 without division.
 TEST(PointIndex, ListsFewPointsInVainInAThicket) {
   const std::vector<PointIndex::Influence> influences = thicket(4000, 1.0, 5);
   const PointIndex index(influences, kCell_m);
@@ -77,12 +74,12 @@ TEST(PointIndex, ListsFewPointsInVainInAThicket) {
     counting += std::size_t(std::ranges::count_if(influences, [&](const auto& i) { return counts(i, place); }));
   }
   EXPECT_GT(counting, 1000u);
-  EXPECT_LT(listed, 5 * counting) << listed;
+  EXPECT_LT(listed, 4 * counting) << listed;
 }
 
 TEST(PointIndex, KnowsWhereOthersCountEvenWhereNoneOfItsOwnDo) {
   const std::vector<PointIndex::Influence> own = thicket(300, 0.5, 1);
-  std::vector<PointIndex::Influence> others = thicket(20, 3.0, 2);
+  const std::vector<PointIndex::Influence> others = thicket(20, 3.0, 2);
   PointIndex index(own, kCell_m);
   index.mark_closer(others);
   for (const glm::vec3& place : places(3.0)) {
